@@ -1,0 +1,13 @@
+# One instruction set, one set of warnings, one choice of sanitizer for the whole build: every target inherits them from here.
+
+set(CGSR_ARCH "x86-64" CACHE STRING "value of -march for our own code (x86-64 is the SSE2 baseline)")
+set(CGSR_SANITIZE "" CACHE STRING "empty, or a value for -fsanitize (address,undefined or thread)")
+
+# Never contract a*b+c: the same bytes on every machine matter more than the last percent.
+add_compile_options(-march=${CGSR_ARCH} -ffp-contract=off)
+add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wold-style-cast
+                    -Werror)
+if(CGSR_SANITIZE)
+  add_compile_options(-fsanitize=${CGSR_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${CGSR_SANITIZE})
+endif()

@@ -1,0 +1,26 @@
+# One folder is one static library: cgsr_library(NAME sources… DEPENDS targets…). The dependencies named here are the arrows of
+# docs/architecture.md; tools/check_layers.py holds the #include lines to the same arrows.
+
+function(cgsr_library name)
+  cmake_parse_arguments(ARG "" "" "DEPENDS" ${ARGN})
+  add_library(cgsr_${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
+  target_include_directories(cgsr_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+  target_link_libraries(cgsr_${name} PUBLIC tl::expected fmt::fmt ${ARG_DEPENDS})
+endfunction()
+
+# cgsr_test(NAME sources… DEPENDS targets… [LABELS …]): one test program per folder. Each TEST() is a ctest of its own; suites whose
+# name ends in Property, Contract, Stress, Alloc, Fault, Replay or Golden carry that word as a label too.
+function(cgsr_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "DEPENDS;LABELS" ${ARGN})
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 120)
+  endif()
+  add_executable(test_${name} ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}: DISCOVERY_MODE PRE_TEST
+                       PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
+endfunction()
+include(GoogleTest)

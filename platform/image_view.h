@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace cgsr {
+
+enum class PixelFormat : std::uint8_t {
+  kYuyv,    ///< 4:2:2, bytes Y0 U Y1 V, BT.601 limited range (Y 16..235, U and V 16..240); the width is even.
+  kGrey8,   ///< one byte of luma.
+  kBgr24,   ///< three bytes, sRGB-encoded. Only for drawing, learning and files; never on the frame path.
+};
+
+/// An image that lies elsewhere: never owns, never copies. Pixels count from 0 at the centre of the top-left pixel.
+struct ImageView {
+  const std::uint8_t* data = nullptr;
+  int width_px = 0;
+  int height_px = 0;
+  std::ptrdiff_t stride_bytes = 0;
+  PixelFormat format = PixelFormat::kYuyv;
+
+  [[nodiscard]] const std::uint8_t* row(int y) const { return data + y * stride_bytes; }
+  [[nodiscard]] bool empty() const { return data == nullptr || width_px <= 0 || height_px <= 0; }
+};
+
+/// Bytes of one pixel of a row (YUYV: on average).
+constexpr int bytes_per_pixel(PixelFormat format) {
+  return format == PixelFormat::kYuyv ? 2 : format == PixelFormat::kGrey8 ? 1 : 3;
+}
+
+}  // namespace cgsr

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string_view>
+
+namespace cgsr {
+
+/// How parameters are written down once and used everywhere.
+///
+/// A parameter struct is a plain struct of defaults with one static member template that names every field:
+///
+///     struct FollowParameters {
+///       double distance_m = 1.5;
+///       Mode mode = Mode::kPlain;
+///
+///       template <class Self, class Visitor>
+///       static void describe(Self& self, Visitor& visit) {
+///         visit.number("distance_m", self.distance_m, {0.3, 5.0}, "m", "distance to keep from the object");
+///         visit.choice("mode", self.mode, kModeNames, "which search answers");
+///       }
+///     };
+///
+/// The TOML reader, docs/config.md and the configuration's hash are visitors; none of them repeats a name, a range or a default.
+/// A visitor has these members:
+///   number(name, value&, Range{minimum, maximum}, unit, meaning)   int or double; the range is closed
+///   flag(name, value&, meaning)                                    bool
+///   text(name, value&, meaning)                                    std::string
+///   choice(name, value&, table of Named{name, value}, meaning)     any enum
+///   section(name, struct&, meaning)                                another parameter struct
+template <class T>
+struct Range {
+  T minimum;
+  T maximum;
+};
+template <class T>
+Range(T, T) -> Range<T>;
+
+/// One word of the configuration and the enumerator it stands for.
+template <class Enum>
+struct Named {
+  std::string_view name;
+  Enum value;
+};
+
+}  // namespace cgsr
