@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""Holds every #include line to the arrows of docs/architecture.md.
+
+usage: check_layers.py [ROOT]
+
+A room may include itself and the rooms its row names, nothing else of the project's. The table below is the only place
+where an arrow is written down for the machine; a new room needs a row.
+"""
+import pathlib
+import re
+import sys
+
+HAL_INTERFACES = "hal"                     # hal/*.h
+CHAPTERS = ["pipeline/color", "pipeline/localization", "pipeline/illumination", "pipeline/person"]
+ALLOWED = {
+    "platform": [],
+    HAL_INTERFACES: ["platform"],
+    "hal/replay": [HAL_INTERFACES, "platform"],
+    "hal/dummy": [HAL_INTERFACES, "platform"],
+    "hal/v4l2": [HAL_INTERFACES, "platform"],
+    "hal/gpiod": [HAL_INTERFACES, "platform"],
+    "hal/socketcan": [HAL_INTERFACES, "platform"],
+    "hal/rmp": [HAL_INTERFACES, "platform"],
+    "hal/sim": [HAL_INTERFACES, "platform"],
+    "pipeline/runtime": ["platform"],
+    "pipeline/imaging": ["platform"],
+    "pipeline/geometry": ["platform"],
+    "pipeline/world": ["platform", "pipeline/geometry"],
+    "pipeline/render": ["platform", "pipeline/geometry", "pipeline/world"],
+    "pipeline/color": ["platform", "pipeline/geometry", "pipeline/imaging"],
+    "pipeline/localization": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/world", "pipeline/render"],
+    "pipeline/illumination": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/world", "pipeline/render"],
+    "pipeline/person": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/color"],
+    "pipeline/behavior": ["platform", "pipeline/geometry", "pipeline/world", *CHAPTERS],
+    # the two loops: files directly in pipeline/
+    "pipeline": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/geometry", "pipeline/imaging", "pipeline/world",
+                 "pipeline/render", "pipeline/behavior", *CHAPTERS],
+}
+# The outermost rooms see everything, but nobody sees them, and what is theirs alone stays theirs.
+OUTERMOST = ["src", "src/config", "tools/lab", "tests"]
+# A chapter knows no device, thread, clock or environment.
+FORBIDDEN_IN_CHAPTERS = re.compile(r'^\s*#include\s+[<"](thread|mutex|condition_variable|fcntl\.h|unistd\.h|sys/|platform/(clock|thread|stop|service)\.h|hal/)')
+PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", *CHAPTERS]
+# Peers are linked by the lab alone; the simulator's truth is for tests and the lab.
+ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": ["tests", "tools/lab", "hal/sim"]}
+INCLUDE = re.compile(r'^\s*#include\s+([<"])([^>"]+)[>"]')
+
+
+def room_of(path):
+    """The longest known room that holds the path (a header that is included, or a file that includes)."""
+    parent = path.rsplit("/", 1)[0] if "/" in path else ""
+    while parent:
+        if parent in ALLOWED or parent in OUTERMOST:
+            return parent
+        parent = parent.rsplit("/", 1)[0] if "/" in parent else ""
+    return None
+
+
+def problems(root):
+    files = sorted(p for pattern in ("*.h", "*.cpp") for p in root.rglob(pattern))
+    for file in files:
+        path = file.relative_to(root).as_posix()
+        if path.startswith(("build/", "out/")):
+            continue
+        room = room_of(path)
+        if room is None:
+            yield f"{path}: lies in no known room; tools/check_layers.py needs a row for it"
+            continue
+        for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            target = match.group(2)
+            for name, rooms in ONLY_IN.items():
+                if target.startswith(name) and not any(path.startswith(r + "/") for r in rooms):
+                    yield f"{path}:{number}: {target} may be included by {' and '.join(rooms)} only"
+            if room in PURE and FORBIDDEN_IN_CHAPTERS.match(line):
+                yield f"{path}:{number}: a chapter knows no device, thread or clock, but includes {target}"
+            if match.group(1) != '"':
+                continue
+            if not (root / target).exists():
+                yield f'{path}:{number}: "{target}" is not a path from the root'
+                continue
+            other = room_of(target)
+            if other == room or room in OUTERMOST and other not in OUTERMOST:
+                continue
+            if room in OUTERMOST and (other == "src/config" or path.startswith("tests/") or other == "src" and room == "src/config"):
+                continue
+            if other not in ALLOWED.get(room, []):
+                yield f"{path}:{number}: {room} may not include {target} (its row allows {', '.join(ALLOWED.get(room, [])) or 'nothing'})"
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else __file__).resolve()
+    root = root if root.is_dir() else root.parents[1]
+    found = list(problems(root))
+    for line in found:
+        print(line)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
