@@ -25,23 +25,26 @@ struct Odometry {
 
 enum class DriveFailure : std::uint8_t {
   kNotStarted,
-  kNotReady,      ///< the base refuses motion: disabled, emergency stop, low battery.
-  kSendFailed,    ///< the command did not leave this computer.
-  kNoFeedback,    ///< nothing heard from the base yet.
+  kNotReady,    ///< the base refuses motion: disabled, emergency stop, low battery.
+  kSendFailed,  ///< the command did not leave this computer.
+  kNoFeedback,  ///< nothing heard from the base yet.
 };
 
 /// A base that is driven by velocity commands and reports odometry.
 ///
-/// Threads: start and stop from the service thread, the rest from the motion thread only. Nothing here blocks or allocates but start and stop.
+/// Threads: start and stop from the service thread, the rest from the motion thread only. Nothing here blocks or
+/// allocates but start and stop. `now` never falls from call to call.
 class Drive {
  public:
   virtual ~Drive() = default;
 
-  /// Opens the base. It stands still and stays still until the first command. Starting twice is an error.
+  /// Opens the base. It stands still and stays still until the first command. Starting twice is an error; after stop()
+  /// it may be started again: the odometry's pose then begins anew.
   virtual Result<void> start() = 0;
 
-  /// Commands a velocity from `now` on; non-finite values are refused as kSendFailed and change nothing.
-  /// A base stops by itself when commands cease (the Segway after 0.4 s).
+  /// Commands a velocity from `now` on; non-finite values are refused as kSendFailed and change nothing. A base may
+  /// bound what it is asked for (speed, acceleration): odometry tells what it does. It stops by itself when commands
+  /// cease (the Segway after 0.4 s).
   virtual tl::expected<void, DriveFailure> command(const Twist& twist, MonoTime now) = 0;
 
   /// \return the newest odometry at or before `now`; its stamp says how old it is.

@@ -21,7 +21,8 @@ class Switches {
   /// Names of the lines, in the order of the configuration.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
 
-  /// Switches an output. \return an error that names the line when there is none of that name, it is an input, or it did not answer.
+  /// Switches an output. \return an error that names the line when there is none of that name, it is an input, or it
+  /// did not answer.
   virtual Result<void> set(std::string_view name, bool on) = 0;
 
   /// Reads a line: of an output, what was last set.
