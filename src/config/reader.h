@@ -1,0 +1,104 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "platform/error.h"
+#include "platform/parameters.h"
+#include "src/config/document.h"
+
+namespace cgsr::config {
+
+/// What becomes of a key that a file does not name.
+enum class Missing {
+  kIsAnError,     ///< every key and section must be there: the files that robots ship with say all they mean.
+  kTakesDefault,  ///< tools and tests name only what they change.
+};
+
+/// Fills a parameter struct from a document and collects everything that is wrong with it: unknown keys and sections
+/// (with the nearest known spelling), missing ones, wrong types, values out of range or not finite, unknown words of a
+/// choice.
+///
+/// A section's struct may have `std::string inconsistency() const`: what is wrong with its keys together, empty when
+/// nothing is. It is asked once all its keys are good by themselves.
+class Reader {
+ public:
+  Reader(const Document& document, Missing missing);
+  ~Reader();
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  void number(std::string_view name, int& value, Range<int> range, std::string_view unit, std::string_view meaning);
+  void number(std::string_view name, double& value, Range<double> range, std::string_view unit,
+              std::string_view meaning);
+  void flag(std::string_view name, bool& value, std::string_view meaning);
+  void text(std::string_view name, std::string& value, std::string_view meaning);
+
+  template <class Enum, class Names>
+  void choice(std::string_view name, Enum& value, const Names& names, std::string_view /*meaning*/) {
+    std::vector<std::string_view> words;
+    for (const Named<Enum>& named : names) words.push_back(named.name);
+    if (const auto chosen = choose(name, words)) value = names[*chosen].value;
+  }
+
+  template <class Struct>
+  void section(std::string_view name, Struct& value, std::string_view /*meaning*/) {
+    if (!enter(name)) return;
+    read_members(value);
+    leave();
+  }
+
+  /// The outermost struct. \return nothing, or every problem, a line each, in the order of the file.
+  template <class Struct>
+  Result<void> read(Struct& value) {
+    read_members(value);
+    return finish();
+  }
+
+ private:
+  struct State;
+
+  template <class Struct>
+  void read_members(Struct& value) {
+    const std::size_t problems_before = problem_count();
+    Struct::describe(value, *this);
+    if constexpr (requires {
+                    { value.inconsistency() } -> std::convertible_to<std::string>;
+                  }) {
+      if (problem_count() == problems_before) complain_of_section(value.inconsistency());
+    }
+  }
+
+  std::optional<std::size_t> choose(std::string_view name, const std::vector<std::string_view>& words);
+  bool enter(std::string_view name);
+  void leave();
+  void complain_of_section(const std::string& inconsistency);
+  [[nodiscard]] std::size_t problem_count() const;
+  Result<void> finish();
+
+  std::unique_ptr<State> state_;
+};
+
+/// \return the parameters of `document`, or every problem at once: `config/home.toml:14: stage.track.budget_us = 90000
+/// is not in 100..33000 µs`
+template <class Parameters>
+Result<Parameters> read(const Document& document, Missing missing) {
+  Parameters parameters;
+  Reader reader(document, missing);
+  if (auto outcome = reader.read(parameters); !outcome) return tl::unexpected(outcome.error());
+  return parameters;
+}
+
+template <class Parameters>
+Result<Parameters> read_file(const std::filesystem::path& file, Missing missing) {
+  const auto document = Document::load(file);
+  if (!document) return tl::unexpected(document.error());
+  return read<Parameters>(*document, missing);
+}
+
+}  // namespace cgsr::config
