@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "pipeline/imaging/color_code.h"
+#include "platform/parameters.h"
+
+namespace cgsr::color {
+
+/// The colour of a global light: what it multiplies each channel by (diagonal model, Eq. 3.1). 1 is the brightest that is simulated.
+using Light = imaging::Rgb;
+
+/// The lights that learning simulates: a grid of steps^3 over [lowest, highest], without the implausible ones.
+struct LightParameters {
+  int steps = 3;
+  double lowest = 0.6;
+  double highest = 1.0;
+  double max_green_excess = 1.0;
+  double assumed = 0.8;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("steps", self.steps, Range{1, 5}, "", "simulated lights per channel");
+    visit.number("lowest", self.lowest, Range{0.05, 1.0}, "",
+                 "darkest simulated light; below 0.4 false positives grow");
+    visit.number("highest", self.highest, Range{0.05, 1.0}, "", "brightest simulated light");
+    visit.number("max_green_excess", self.max_green_excess, Range{0.0, 1.0}, "",
+                 "a light whose green exceeds the mean of its red and blue by more is implausible; 1 accepts all");
+    visit.number("assumed", self.assumed, Range{0.05, 1.0}, "",
+                 "light assumed at learning unless a channel is brighter");
+  }
+};
+
+/// The diagonal model (Eq. 3.1): recorded = texture * light, channel by channel.
+constexpr imaging::Rgb lit(const imaging::Rgb& texture, const Light& light) {
+  return {texture.r * light.r, texture.g * light.g, texture.b * light.b};
+}
+
+/// Its inverse: the texture that a recorded colour must have had. \param light  every channel > 0.
+constexpr imaging::Rgb without_light(const imaging::Rgb& recorded, const Light& light) {
+  return {recorded.r / light.r, recorded.g / light.g, recorded.b / light.b};
+}
+
+/// \return whether such a light is to be expected where the robot lives.
+bool is_plausible(const Light& light, const LightParameters& parameters);
+
+/// \return the plausible lights of the grid in the order r, g, b (b fastest); with one step the middle of the range.
+///         Empty when the predicate leaves none or lowest > highest.
+std::vector<Light> light_grid(const LightParameters& parameters);
+
+}  // namespace cgsr::color

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "pipeline/color/divergence.h"
+#include "platform/box.h"
+#include "platform/parameters.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::color {
+
+enum class BinWeights : std::uint8_t { kPlain, kSurroundings };
+
+inline constexpr std::array kBinWeightsNames{
+    Named<BinWeights>{"plain", BinWeights::kPlain},
+    Named<BinWeights>{"surroundings", BinWeights::kSurroundings},
+};
+
+struct SearchParameters {
+  Divergence divergence = Divergence::kJensenShannon;
+  BinWeights weights = BinWeights::kSurroundings;
+  double min_weight = 0.1;
+  int sizes = 3;
+  double size_step = 1.12;
+  double max_stride_px = 8.0;
+  int stride_share = 8;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("divergence", self.divergence, kDivergenceNames, "how histograms are compared");
+    visit.choice("weights", self.weights, kBinWeightsNames,
+                 "plain: the dissertation's; surroundings: bins weigh what tells them apart");
+    visit.number("min_weight", self.min_weight, Range{0.0, 1.0}, "", "least weight of a bin");
+    visit.number("sizes", self.sizes, Range{1, 5}, "", "window sizes per image, around the one asked for");
+    visit.number("size_step", self.size_step, Range{1.01, 2.0}, "", "ratio of neighbouring sizes");
+    visit.number("max_stride_px", self.max_stride_px, Range{1.0, 64.0}, "px", "largest step between windows");
+    visit.number("stride_share", self.stride_share, Range{2, 32}, "", "steps per shorter side of the box, at least");
+  }
+};
+
+inline constexpr int kMaxMatches = 16;
+inline constexpr int kMaxSizes = 5;
+
+/// Where the object was and how surely it is still near: a penalty that grows with the square of the distance between the centres
+/// up to a limit, so that it shifts the choice and never forbids: a prior, not a cage.
+struct Prior {
+  double x_px = 0.0;  ///< centre, camera pixels.
+  double y_px = 0.0;
+  double radius_px = 100.0;  ///< > 0: where the penalty reaches its limit.
+  double penalty = 0.0;      ///< the limit, in similarity (0..1).
+};
+
+/// One question to the search.
+struct SearchRequest {
+  double width_px = 0.0;  ///< the middle size, camera pixels: the learned one, or the last one found.
+  double height_px = 0.0;
+  double max_divergence =
+      0.3;  ///< windows above it are no matches. The lower, the cheaper an image without the object.
+  int candidates =
+      1;  ///< how many matches at most, 1..kMaxMatches: local maxima, each the best of what the ones before leave.
+  double max_overlap =
+      0.0;  ///< of two matches at most this share of the smaller one may be covered by the other, 0..1.
+  std::optional<Box> region;  ///< windows lie wholly inside; nothing: the whole image.
+  std::optional<Prior> prior;
+  WorkBudget* budget = nullptr;  ///< asked once per unit (16 neighbouring windows looked into); nothing: unlimited.
+};
+
+struct Match {
+  Box box;                  ///< camera pixels, on the grid of strides.
+  double divergence = 0.0;  ///< without the prior's penalty.
+  int light = 0;            ///< index into the model's lights.
+  int size = 0;             ///< index into the sizes, 0 the smallest.
+};
+
+struct SearchResult {
+  std::array<Match, kMaxMatches> matches;  ///< best first. Ties: lower size, then light, then y, then x.
+  int count = 0;
+  bool exact =
+      true;  ///< false: the budget ended the search; what is reported is the best seen, not known to be the best there is.
+  int windows = 0;   ///< there were to compare (positions times sizes).
+  int examined = 0;  ///< of those had their histogram counted: the measure of work.
+};
+
+enum class SearchFailure : std::uint8_t {
+  kNoRoom,      ///< no window of any size fits into the image or region.
+  kBadRequest,  ///< a size, candidate count, overlap or prior that is not finite or out of range.
+  kTooLarge,    ///< the image is larger than the search was made for.
+};
+
+}  // namespace cgsr::color
