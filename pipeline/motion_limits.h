@@ -72,21 +72,18 @@ struct MotionParameters {
   }
 };
 
-/// Moves `current` towards `target`: away from zero by at most `rise` per second, towards zero by at most `fall` per
-/// second. A change of sign passes through zero and goes on from there in the next step. \param elapsed_s  >= 0.
-double ramp(double current, double target, double rise, double fall, double elapsed_s);
-
 /// \return `goal` within the speed and turn limits.
 hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits);
 
-/// The fastest forward (or backward) speed of `command`'s sign, at most `command`'s own, from which the robot still
-/// stops inside the area:
+/// The fastest speed of `command`'s sign, at most its own, from which the robot still stops inside the area:
 ///
-///     v t + v^2 / (2 a) <= D    with t the reaction, a the deceleration limit, D the way to the edge
+///     v t + v^2 / (2 a) <= D    t: age_s + reaction_s, a: the deceleration limit, D: the way to the edge
 ///
-/// D is the shortest over all headings that the robot can reach while it stops at the turn rate of `command`, so that a
-/// turn towards the edge is seen coming. Outside the area only motion that leads back in is left. \param pose  finite;
-/// only x_m, y_m and heading_rad are read.
-double speed_within_area(const hal::Twist& command, const hal::Odometry& pose, const MotionParameters& limits);
+/// D is the shortest over all headings that the robot can reach while it stops at `command`'s turn rate, to either side: a turn
+/// towards the edge is seen coming. Outside the area only motion that leads back in is left.
+/// \param pose  finite; x_m, y_m and heading_rad are read.
+/// \param age_s  of the pose, >= 0.
+double speed_within_area(const hal::Twist& command, const hal::Odometry& pose, double age_s,
+                         const MotionParameters& limits);
 
 }  // namespace cgsr

@@ -101,13 +101,14 @@ class MotionLoop {
  private:
   static constexpr int kStepsInTimeToArm = 100;
 
-  void take_time(MonoTime now, MotionStatus& status);
-  StopCause take_goal(MonoTime now, const MotionInputs& inputs);
-  StopCause take_odometry(MonoTime now, MotionStatus& status);
-  StopCause hold(MonoTime now, const MotionInputs& inputs) const;
-  void settle_arming(MonoTime now, StopCause standing, ArmRequest request, MotionStatus& status);
+  void take_time(MonoTime now);
+  [[nodiscard]] StopCause take_goal(MonoTime now, const std::optional<Goal>& goal);
+  [[nodiscard]] StopCause take_odometry(MonoTime now);
+  [[nodiscard]] StopCause standing_cause(MonoTime now, const MotionInputs& inputs);
+  [[nodiscard]] StopCause arm(ArmRequest request, StopCause standing);
+  void disarm_if_due(MonoTime now, StopCause standing);
   void disarm(StopCause latched);
-  hal::Twist follow_goal(MotionStatus& status) const;
+  [[nodiscard]] hal::Twist towards_goal(MonoTime now, MotionStatus& status) const;
   void send(const hal::Twist& twist, MonoTime now, MotionStatus& status);
 
   std::unique_ptr<hal::Drive> drive_;
@@ -121,8 +122,10 @@ class MotionLoop {
   hal::Twist commanded_;
   std::optional<MonoTime> last_step_;
   std::optional<MonoTime> held_since_;
-  Duration elapsed_{};
-  int steps_in_time_ = 0;
+  StopCause send_failure_ = StopCause::kNone;  // of the last command
+  Duration elapsed_{};                         // for the ramps
+  bool late_ = false;
+  int steps_in_time_ = 0;  // since the last late one
 };
 
 }  // namespace cgsr

@@ -1,0 +1,55 @@
+#include "pipeline/motion_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace cgsr {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// The largest cosine over the angles within `spread` of `angle`.
+double largest_cosine(double angle, double spread) {
+  const double offset = std::abs(std::remainder(angle, 2.0 * kPi));  // from the direction whose cosine is 1
+  return offset <= spread ? 1.0 : std::cos(offset - spread);
+}
+
+/// How far the robot may still go before it crosses one edge, `gap` ahead in the direction `edge_rad`.
+double way_to_edge(double gap, double edge_rad, double travel_rad, double spread) {
+  const double approach = largest_cosine(travel_rad - edge_rad, spread);
+  if (approach <= 0.0) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, gap) / approach;
+}
+
+}  // namespace
+
+hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits) {
+  return {std::clamp(goal.forward_mps, -limits.backward_limit_mps, limits.forward_limit_mps),
+          std::clamp(goal.left_radps, -limits.turn_limit_radps, limits.turn_limit_radps)};
+}
+
+double speed_within_area(const hal::Twist& command, const hal::Odometry& pose, double age_s,
+                         const MotionParameters& limits) {
+  const KeepInParameters& area = limits.keep_in;
+  const double speed = std::abs(command.forward_mps);
+  if (!area.enabled || speed == 0.0) return command.forward_mps;
+
+  const double deceleration = limits.deceleration_limit_mps2;
+  const double unbraked_s = age_s + limits.reaction_s;
+  const double spread = std::min(kPi, std::abs(command.left_radps) * (unbraked_s + speed / deceleration));
+  const double travel_rad = pose.heading_rad + (command.forward_mps < 0.0 ? kPi : 0.0);
+  const double way = std::min({way_to_edge(area.x_max_m - pose.x_m, 0.0, travel_rad, spread),
+                               way_to_edge(area.y_max_m - pose.y_m, kPi / 2.0, travel_rad, spread),
+                               way_to_edge(pose.x_m - area.x_min_m, kPi, travel_rad, spread),
+                               way_to_edge(pose.y_m - area.y_min_m, -kPi / 2.0, travel_rad, spread)});
+
+  // v t + v^2 / (2 a) = way, solved for v.
+  const double at = deceleration * unbraked_s;
+  const double allowed = std::sqrt(at * at + 2.0 * deceleration * way) - at;
+  return std::copysign(std::min(speed, allowed), command.forward_mps);
+}
+
+}  // namespace cgsr

@@ -1,0 +1,67 @@
+#include "src/config/documentation.h"
+
+#include <fmt/format.h>
+
+namespace cgsr::config {
+
+namespace {
+
+/// A cell of a Markdown table must not hold the sign that ends it.
+std::string cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '|') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+}  // namespace
+
+Documentation::Documentation() {
+  sections_.push_back({});
+}
+
+void Documentation::number(std::string_view name, int value, Range<int> range, std::string_view unit,
+                           std::string_view meaning) {
+  row(name, unit, fmt::format("{}..{}", range.minimum, range.maximum), fmt::to_string(value), meaning);
+}
+
+void Documentation::number(std::string_view name, double value, Range<double> range, std::string_view unit,
+                           std::string_view meaning) {
+  row(name, unit, fmt::format("{}..{}", range.minimum, range.maximum), fmt::to_string(value), meaning);
+}
+
+void Documentation::flag(std::string_view name, bool value, std::string_view meaning) {
+  row(name, "", "true, false", value ? "true" : "false", meaning);
+}
+
+void Documentation::text(std::string_view name, const std::string& value, std::string_view meaning) {
+  row(name, "", "text", '"' + value + '"', meaning);
+}
+
+std::size_t Documentation::enter(std::string_view name, std::string_view meaning) {
+  const std::string& outer = sections_[current_].path;
+  std::string path = outer.empty() ? std::string(name) : fmt::format("{}.{}", outer, name);
+  sections_.push_back({std::move(path), std::string(meaning), ""});
+  const std::size_t before = current_;
+  current_ = sections_.size() - 1;
+  return before;
+}
+
+void Documentation::row(std::string_view name, std::string_view unit, std::string_view range, std::string_view value,
+                        std::string_view meaning) {
+  sections_[current_].rows +=
+      fmt::format("| `{}` | {} | {} | {} | {} |\n", name, cell(unit), cell(range), cell(value), cell(meaning));
+}
+
+std::string Documentation::markdown() const {
+  std::string text;
+  for (const auto& [path, meaning, rows] : sections_) {
+    if (!path.empty()) text += fmt::format("\n## `[{}]`\n\n{}.\n", path, meaning);
+    if (!rows.empty()) text += "\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n" + rows;
+  }
+  return text;
+}
+
+}  // namespace cgsr::config
