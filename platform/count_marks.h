@@ -25,7 +25,9 @@ inline void count_stage_begin() {
 }
 
 /// Stops counting for the calling thread and books what it executed since count_stage_begin() under `name` and the
-/// image under way. \param name of the stage; letters, digits, '-', '_' and '.'.
+/// image under way.
+///
+/// \param name of the stage; letters, digits, '-', '_' and '.'.
 inline void count_stage_end(const char* name) {
   if (RUNNING_ON_VALGRIND == 0 || !count_marks_detail::open) return;
   count_marks_detail::open = false;

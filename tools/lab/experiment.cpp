@@ -1,0 +1,23 @@
+#include "tools/lab/experiment.h"
+
+#include <array>
+
+#include "src/config/canonical.h"
+
+namespace cgsr::lab {
+
+std::string Setting::config_sha256() const {
+  return config::hash(shipped);
+}
+
+std::span<const Experiment> experiments() {
+  static constexpr std::array kExperiments{
+      Experiment{"light-sweep", "Chapter 3 on generated scenes while the light changes (3.1.1, 3.2.1)", false,
+                 light_sweep},
+      Experiment{"real-video", "Chapter 3 beside CAM-Shift, KCF and CSRT on real video (Figure 3.3)", true, real_video},
+      Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
+  };
+  return kExperiments;
+}
+
+}  // namespace cgsr::lab

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "platform/error.h"
+#include "tools/lab/report.h"
+#include "tools/lab/shipped.h"
+
+namespace cgsr::lab {
+
+/// What a table is measured with.
+struct Setting {
+  std::uint64_t seed = 1;
+  std::optional<int> trials;                  ///< nothing: each table's own number
+  std::optional<std::filesystem::path> data;  ///< the folder of real images, where there is one
+  bool count = true;                          ///< measure instructions as well, which is slow
+  Shipped shipped;
+  std::function<void(const std::string&)> progress = [](const std::string&) {};
+
+  [[nodiscard]] std::string config_sha256() const;
+};
+
+/// One table or figure that can be reproduced.
+struct Experiment {
+  std::string_view name;
+  std::string_view title;
+  bool by_name_only;  ///< too slow, or in need of data that not everybody has: run only when asked for.
+  Result<Report> (*run)(const Setting&);
+};
+
+std::span<const Experiment> experiments();
+
+// One file each in tables/.
+Result<Report> real_video(const Setting& setting);
+Result<Report> light_sweep(const Setting& setting);
+Result<Report> search_cost(const Setting& setting);
+
+}  // namespace cgsr::lab

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "tools/lab/box_tracker.h"
+#include "tools/lab/shipped.h"
+
+namespace cgsr::lab {
+
+/// What our tracker is told about where the object is when it starts.
+enum class Start {
+  kWhereLearned,  ///< the next image follows the learned one.
+  kAnywhere,      ///< the next image is unrelated: no prior.
+};
+
+/// Chapter 3 behind the lab's face. Its stages are marked for tools/count: labels (imaging::reduce) and track (everything else).
+std::unique_ptr<BoxTracker> make_ours(const Shipped& configuration, Start start = Start::kWhereLearned);
+
+/// The same in the dissertation's own mode.
+std::unique_ptr<BoxTracker> make_plain(Shipped configuration, Start start = Start::kWhereLearned);
+
+}  // namespace cgsr::lab

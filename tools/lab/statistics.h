@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace cgsr::lab {
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The 95 % interval of a share, after Wilson: it stays inside [0, 1] and is right near its ends.
+/// \return {0, 1} without trials.
+Interval wilson(int successes, int trials);
+
+/// The 95 % interval of the mean by percentile bootstrap, 2000 draws.
+///
+/// \param values  in the order in which they were measured.
+/// \param block  how many neighbours are drawn together: 1 for independent values; for the images of a video, where one image
+///        resembles the next, about as many as stay alike.
+/// \param seed  same seed, same interval.
+Interval bootstrap_mean(std::span<const double> values, int block, std::uint64_t seed);
+
+/// The same for the mean of several groups' means: every draw takes each group anew, so that a long group weighs as much as a short one.
+Interval bootstrap_mean_of_means(std::span<const std::span<const double>> groups, int block, std::uint64_t seed);
+
+double mean(std::span<const double> values);
+
+}  // namespace cgsr::lab

@@ -1,0 +1,36 @@
+#include "tools/lab/trackers.h"
+
+#include <algorithm>
+
+#include "platform/count_marks.h"
+#include "tools/lab/ours.h"
+#include "tools/lab/peers.h"
+
+namespace cgsr::lab {
+
+std::span<const NamedTracker> trackers() {
+  static constexpr std::array kTrackers{
+      NamedTracker{"ours", [](const Shipped& shipped) { return make_ours(shipped); }},
+      NamedTracker{"plain", [](const Shipped& shipped) { return make_plain(shipped); }},
+      NamedTracker{"CAM-Shift", [](const Shipped&) { return make_cam_shift(); }},
+      NamedTracker{"KCF", [](const Shipped&) { return make_kcf(); }},
+      NamedTracker{"CSRT", [](const Shipped&) { return make_csrt(); }},
+  };
+  return kTrackers;
+}
+
+Result<Boxes> follow(BoxTracker& tracker, const Film& film, int images, const Film& learn_from) {
+  const auto first = learn_from.image(0);
+  if (!first) return tl::unexpected(first.error());
+  if (auto learned = tracker.learn(*first, *learn_from.truth.front()); !learned) return tl::unexpected(learned.error());
+  Boxes boxes{learn_from.truth.front()};
+  for (int i = 1; i < std::min(images, film.size()); ++i) {
+    const auto image = film.image(i);
+    if (!image) return tl::unexpected(image.error());
+    boxes.push_back(tracker.track(*image).box);
+    count_image_end();
+  }
+  return boxes;
+}
+
+}  // namespace cgsr::lab
