@@ -27,7 +27,7 @@ enum class DriveFailure : std::uint8_t {
   kNotStarted,
   kNotReady,    ///< the base refuses motion: disabled, emergency stop, low battery.
   kSendFailed,  ///< the command did not leave this computer.
-  kNoFeedback,  ///< nothing heard from the base yet.
+  kNoFeedback,  ///< nothing heard from the base yet, or nothing recent enough to drive on.
 };
 
 /// A base that is driven by velocity commands and reports odometry.
