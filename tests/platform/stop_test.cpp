@@ -1,0 +1,69 @@
+#include "platform/stop.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <thread>
+
+#include "platform/clock.h"
+
+namespace cgsr {
+namespace {
+
+TEST(StopRequest, IsFinalAndEndsTheWait) {
+  StopRequest stop;
+  const RealClock clock;
+  EXPECT_FALSE(stop.requested());
+  EXPECT_FALSE(stop.wait_until(clock.now() + std::chrono::milliseconds(5)));
+  std::thread other([&] { stop.request(); });
+  EXPECT_TRUE(stop.wait_until(clock.now() + std::chrono::seconds(30)));
+  other.join();
+  EXPECT_TRUE(stop.requested());
+  EXPECT_TRUE(stop.wait_until(MonoTime{}));
+  EXPECT_TRUE(stop.wait_until(MonoTime{}));
+}
+
+class StopOnSignalsTest : public testing::TestWithParam<int> {};
+
+TEST_P(StopOnSignalsTest, RequestsTheStop) {
+  StopRequest stop;
+  const StopOnSignals signals(stop);
+  EXPECT_EQ(StopOnSignals::received(), 0);
+  raise(GetParam());
+  EXPECT_TRUE(stop.requested());
+  EXPECT_EQ(StopOnSignals::received(), GetParam());
+}
+
+// As the service meets it: the signal comes from outside while the service thread waits.
+TEST_P(StopOnSignalsTest, WakesTheServiceThread) {
+  StopRequest stop;
+  const StopOnSignals signals(stop);
+  const RealClock clock;
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    kill(getpid(), GetParam());
+  });
+  EXPECT_TRUE(stop.wait_until(clock.now() + std::chrono::seconds(30)));
+  other.join();
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, StopOnSignalsTest, testing::Values(SIGTERM, SIGINT));
+
+int seen_by_former_handler = 0;
+
+TEST(StopOnSignals, GivesTheSignalsBack) {
+  struct sigaction action {};
+  struct sigaction former {};
+  action.sa_handler = [](int signal) { seen_by_former_handler = signal; };
+  sigaction(SIGTERM, &action, &former);
+  StopRequest stop;
+  { const StopOnSignals signals(stop); }
+  raise(SIGTERM);
+  EXPECT_EQ(seen_by_former_handler, SIGTERM);
+  EXPECT_FALSE(stop.requested());
+  sigaction(SIGTERM, &former, nullptr);
+}
+
+}  // namespace
+}  // namespace cgsr
