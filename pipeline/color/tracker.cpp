@@ -1,5 +1,7 @@
 #include "pipeline/color/tracker.h"
 
+#include <algorithm>
+
 #include <utility>
 
 #include "pipeline/color/window_search.h"

@@ -190,6 +190,54 @@ bool Reader::enter(std::string_view name) {
   return true;
 }
 
+std::size_t Reader::list_length(std::string_view name) {
+  State::Level& outer = state_->level();
+  outer.known.push_back(name);
+  const toml::node* node = outer.table->get(name);
+  if (node == nullptr) return 0;
+  if (!node->is_array())
+    state_->complain_of_type(name, *node, fmt::format("a list of sections [[{}{}]]", outer.prefix, name));
+  return node->is_array() ? node->as_array()->size() : 0;
+}
+
+bool Reader::enter_item(std::string_view name, std::size_t index) {
+  State::Level& outer = state_->level();
+  const toml::node& node = *outer.table->get(name)->as_array()->get(index);
+  const std::string item = fmt::format("{}[{}]", name, index);
+  if (!node.is_table()) {
+    state_->complain_of_type(item, node, "a section");
+    return false;
+  }
+  state_->levels.push_back({node.as_table(), fmt::format("{}{}.", outer.prefix, item), {}});
+  return true;
+}
+
+void Reader::read_numbers(std::string_view name, double* values, std::size_t count, Range<double> range,
+                          std::string_view unit) {
+  const toml::node* node = state_->find(name);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != count) {
+    return state_->complain_of_type(name, *node, fmt::format("a list of {} numbers", count));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const toml::node& element = *array->get(i);
+    const std::string item = fmt::format("{}[{}]", name, i);
+    const auto read = element.is_number() ? element.value<double>() : std::nullopt;
+    if (!read) {
+      state_->complain_of_type(item, element, "a number");
+    } else if (!std::isfinite(*read) || *read < range.minimum || *read > range.maximum) {
+      state_->complain_of_range(item, element, *read, range, unit);
+    } else {
+      values[i] = *read;
+    }
+  }
+}
+
+void Reader::line(int& value) const {
+  value = line_of(*state_->level().table);
+}
+
 void Reader::leave() {
   state_->complain_of_unknown_keys();
   state_->levels.pop_back();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <memory>
@@ -53,6 +54,29 @@ class Reader {
     leave();
   }
 
+  /// A fixed count of numbers, such as a point or a colour: `name = [1, 2.5, 0]`.
+  template <std::size_t kCount>
+  void numbers(std::string_view name, std::array<double, kCount>& values, Range<double> range, std::string_view unit,
+               std::string_view /*meaning*/) {
+    read_numbers(name, values.data(), kCount, range, unit);
+  }
+
+  /// A list of sections, `[[name]]` or `name = [{...}, {...}]`: one struct each, in the order of the file. None is no
+  /// mistake.
+  template <class Struct>
+  void list(std::string_view name, std::vector<Struct>& values, std::string_view /*meaning*/) {
+    const std::size_t count = list_length(name);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!enter_item(name, i)) continue;
+      values.emplace_back();
+      read_members(values.back());
+      leave();
+    }
+  }
+
+  /// Notes where the section stands, for what can only be judged later.
+  void line(int& value) const;
+
   /// The outermost struct. \return nothing, or every problem, a line each, in the order of the file.
   template <class Struct>
   Result<void> read(Struct& value) {
@@ -76,6 +100,10 @@ class Reader {
 
   std::optional<std::size_t> choose(std::string_view name, const std::vector<std::string_view>& words);
   bool enter(std::string_view name);
+  std::size_t list_length(std::string_view name);
+  bool enter_item(std::string_view name, std::size_t index);
+  void read_numbers(std::string_view name, double* values, std::size_t count, Range<double> range,
+                    std::string_view unit);
   void leave();
   void complain_of_section(const std::string& inconsistency);
   [[nodiscard]] std::size_t problem_count() const;

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <functional>
+
+#include "pipeline/behavior/follow.h"
+#include "pipeline/color/tracker.h"
+#include "pipeline/imaging/reduce.h"
+#include "pipeline/runtime/stage.h"
+#include "platform/image_lease.h"
+#include "platform/parameters.h"
+
+namespace cgsr {
+
+/// What one image led to.
+struct Decision {
+  behavior::FollowDecision follow;
+  color::TrackedObject object;
+  Duration
+      object_age{};  ///< since the image in which `object` was looked for; more than zero when its stage was skipped.
+};
+
+/// The pinhole of the camera that the images come from (frames: docs/frames.md).
+struct Pinhole {
+  double fx_px = 601.8;
+  double fy_px = 579.4;
+  double cx_px = 319.5;
+  double cy_px = 239.5;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("fx_px", self.fx_px, {10.0, 20000.0}, "px", "focal length along x");
+    visit.number("fy_px", self.fy_px, {10.0, 20000.0}, "px", "focal length along y");
+    visit.number("cx_px", self.cx_px, {-10000.0, 20000.0}, "px", "column of the optical axis");
+    visit.number("cy_px", self.cy_px, {-10000.0, 20000.0}, "px", "row of the optical axis");
+  }
+};
+
+/// One image through Figure 5.1, as far as it is built: every line of on_image is a stage with a row in the schedule.
+///
+/// Threads: one, the vision thread. After construction nothing here allocates.
+class VisionLoop {
+ public:
+  /// \param runner  outlives the loop. \param max_width_px, max_height_px  the largest image that will come.
+  VisionLoop(runtime::StageRunner& runner, color::Tracker tracker, behavior::Follow follow, const Pinhole& camera,
+             int max_width_px, int max_height_px);
+  VisionLoop(const VisionLoop&) = delete;
+  VisionLoop& operator=(const VisionLoop&) = delete;
+
+  /// Gives every stage its row in the runner's schedule; to be called once, before the first image.
+  Result<void> bind() { return runner_.bind(decode_, track_, decide_); }
+
+  /// Image in, decision out. Valid between the runner's begin_frame and end_frame.
+  Decision on_image(const ImageLease& image);
+
+ private:
+  /// What the stages after decode read: the image as it came, and reduced to grey and labels. No image: decode failed.
+  struct View {
+    const imaging::ReducedImage* reduced = nullptr;
+  };
+
+  View decode(const ImageLease& image);
+  color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view);
+  Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object);
+
+  template <class Output, class... Inputs>
+  using StageOf = runtime::Stage<std::function<Output(Inputs...)>>;
+
+  runtime::StageRunner& runner_;
+  color::Tracker tracker_;
+  behavior::Follow follow_;
+  Pinhole camera_;
+  imaging::ReducedImage reduced_;
+  MonoTime last_image_{};
+
+  StageOf<View, const ImageLease&> decode_;
+  StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&> track_;
+  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&> decide_;
+};
+
+}  // namespace cgsr

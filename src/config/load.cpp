@@ -1,0 +1,22 @@
+#include "src/config/load.h"
+
+#include "src/config/reader.h"
+
+namespace cgsr::config {
+
+Result<Robot> load_robot(const std::filesystem::path& file) {
+  auto robot = read_file<Robot>(file, Missing::kIsAnError);
+  if (!robot) return robot;
+  robot->run.model = path_beside(file, robot->run.model).string();
+  robot->camera.replay.path = path_beside(file, robot->camera.replay.path).string();
+  return robot;
+}
+
+Result<Color> load_color(const std::filesystem::path& file) {
+  if (file.empty()) return Color{};
+  auto robot = load_robot(file);
+  if (!robot) return tl::unexpected(robot.error());
+  return robot->color;
+}
+
+}  // namespace cgsr::config

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+
+#include "pipeline/color/light.h"
+#include "platform/box.h"
+#include "platform/image_view.h"
+
+namespace cgsr::app {
+
+/// What is written over an image for people.
+struct OverlayFacts {
+  std::uint64_t image_number = 0;
+  std::optional<Box> box;    ///< found object.
+  std::optional<Box> truth;  ///< where it really is, when known.
+  std::optional<color::Light> light;
+  double divergence = 0.0;
+  std::vector<std::string> lines;  ///< free text below the image, one line each; at most three are drawn.
+};
+
+/// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3)
+/// and lines of text. Not for the frame path.
+class Overlay {
+ public:
+  /// \param image_width_px, image_height_px  of every image to come; small ones are drawn larger.
+  Overlay(int image_width_px, int image_height_px);
+
+  [[nodiscard]] cv::Size picture_size() const;
+
+  /// \return the picture, B G R; valid until the next call.
+  const cv::Mat& draw(const ImageView& image, const OverlayFacts& facts);
+
+ private:
+  void draw_box(const Box& box, const cv::Scalar& color, int thickness);
+  void draw_panel(const OverlayFacts& facts);
+
+  int width_px_;
+  int height_px_;
+  double zoom_;
+  std::deque<std::optional<color::Light>> lights_;
+  cv::Mat picture_;
+};
+
+/// \return the image as B G R, through the same BT.601 formula that the pipeline uses.
+cv::Mat to_bgr(const ImageView& image);
+
+}  // namespace cgsr::app

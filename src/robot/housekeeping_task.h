@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "pipeline/color/light_history.h"
+#include "pipeline/runtime/stage_table.h"
+#include "src/config/sha256.h"
+#include "src/output/overlay.h"
+#include "src/output/text_file.h"
+#include "src/output/video_writer.h"
+#include "src/robot/links.h"
+
+namespace cgsr::robot {
+
+/// The files a run leaves behind; each may be missing.
+struct RunOutputs {
+  std::optional<app::TextFile> csv;
+  std::optional<app::VideoWriter> video;
+  std::optional<app::Overlay> overlay;  ///< there whenever `video` is.
+};
+
+/// What a run came to.
+struct RunTally {
+  std::uint64_t frames = 0;
+  std::uint64_t without_image = 0;
+  std::uint64_t found = 0;
+  std::uint64_t beats = 0;            ///< of the motion loop.
+  std::uint64_t beats_in_motion = 0;  ///< a command other than zero went to the base.
+  std::uint64_t pictures = 0;         ///< images that reached housekeeping and are in inputs_sha256.
+  double fastest_mps = 0.0;
+  double fastest_radps = 0.0;
+  MotionStatus last_motion;
+  std::string output_problem;  ///< the first file that could not be written; empty: none.
+};
+
+/// Everything that may be slow: files, video, log, sums. Never real-time; what it cannot keep up with is lost and counted.
+class HousekeepingTask {
+ public:
+  HousekeepingTask(Links& links, const runtime::Schedule& schedule, RunOutputs outputs)
+      : links_(links), table_(schedule), outputs_(std::move(outputs)) {}
+
+  /// Deals with all that lies in the rings.
+  void step();
+
+  [[nodiscard]] const RunTally& tally() const { return tally_; }
+  [[nodiscard]] const runtime::StageTable& table() const { return table_; }
+
+  /// SHA-256 over the rows of the CSV and over the pixels of the images. End the sums.
+  std::string outputs_sha256() { return outputs_sum_.hex(); }
+  std::string inputs_sha256() { return inputs_sum_.hex(); }
+
+ private:
+  void take(const MotionStatus& status);
+  void take(const VisionReport& report);
+  std::optional<ImageLease> picture_of(std::uint64_t sequence);
+  void write_row(const VisionReport& report);
+  void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light);
+  void note(const Result<void>& outcome);
+
+  Links& links_;
+  runtime::StageTable table_;
+  RunOutputs outputs_;
+  RunTally tally_;
+  color::LightHistory lights_;
+  std::optional<ImageLease> next_picture_;
+  behavior::FollowState state_ = behavior::FollowState::kWaiting;
+  config::Sha256 outputs_sum_;
+  config::Sha256 inputs_sum_;
+};
+
+/// The head of the CSV that a run writes.
+std::string run_csv_head();
+
+}  // namespace cgsr::robot

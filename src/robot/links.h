@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "hal/camera.h"
+#include "pipeline/motion_loop.h"
+#include "pipeline/runtime/frame_record.h"
+#include "pipeline/runtime/motion_stop.h"
+#include "pipeline/vision_loop.h"
+#include "platform/image_lease.h"
+#include "platform/ring.h"
+#include "platform/wake_up.h"
+
+namespace cgsr::robot {
+
+/// What vision tells housekeeping about one frame.
+struct VisionReport {
+  Decision decision;
+  runtime::FrameRecord record;
+};
+
+/// How many images capture could not get, by reason; read by anybody.
+struct CaptureCounts {
+  std::atomic<std::uint64_t> images{0};
+  std::atomic<std::uint64_t> timeouts{0};
+  std::atomic<std::uint64_t> no_slot{0};
+  std::atomic<std::uint64_t> corrupt{0};
+  std::atomic<std::uint64_t> disconnected{0};
+};
+
+/// Everything that tasks share: the arrows of docs/architecture.md, one member each. Every ring has one producer and one consumer.
+struct Links {
+  Ring<ImageLease, 4> images;  ///< capture -> vision, which takes the newest.
+  WakeUp image_came;
+  std::atomic<bool> images_ended{false};
+
+  Ring<Goal, 8> goals;  ///< vision -> motion.
+  std::atomic<bool> images_in_time{false};
+  runtime::MotionStop motion_stop;  ///< stages of the safety chain -> motion.
+
+  Ring<ArmRequest, 8> arm_requests;  ///< switch worker -> motion.
+
+  Ring<VisionReport, 64, Overflow::kDiscard> reports;  ///< vision -> housekeeping.
+  Ring<ImageLease, 2, Overflow::kDiscard>
+      pictures;  ///< vision -> housekeeping: at most two images are held downstream.
+  Ring<MotionStatus, 512, Overflow::kDiscard> motions;  ///< motion -> housekeeping.
+
+  CaptureCounts capture;
+};
+
+}  // namespace cgsr::robot

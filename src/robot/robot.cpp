@@ -1,0 +1,95 @@
+#include "src/robot/robot.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "hal/dummy/dummy_switches.h"
+#include "hal/dummy/kinematic_drive.h"
+#include "hal/replay/replay_camera.h"
+#include "pipeline/color/model_file.h"
+
+namespace cgsr::robot {
+
+Result<std::unique_ptr<Robot>> Robot::build(const config::Robot& config, const RunOptions& options) {
+  std::unique_ptr<Robot> robot(new Robot(config, options));
+  for (const auto step : {&Robot::open_camera, &Robot::make_loops, &Robot::open_outputs, &Robot::open_base}) {
+    if (auto done = (robot.get()->*step)(); !done) return tl::unexpected(done.error());
+  }
+  return robot;
+}
+
+Robot::Robot(const config::Robot& config, const RunOptions& options) : config_(config), options_(options) {}
+
+Robot::~Robot() {
+  if (motion_) motion_->stop();
+  if (switches_) switches_->stop();
+  if (camera_) camera_->stop();
+}
+
+Result<void> Robot::open_camera() {
+  auto camera = std::make_unique<hal::ReplayCamera>(config_.camera.replay, &real_clock_);
+  auto mode = camera->start();
+  if (!mode) return tl::unexpected(mode.error());
+  notes_ = camera->notes();
+  mode_ = *mode;
+  camera_ = std::move(camera);
+  return {};
+}
+
+Result<void> Robot::make_loops() {
+  const auto model = color::load_model(config_.run.model);
+  if (!model) return tl::unexpected(model.error());
+  auto tracker = color::Tracker::create(*model, config_.color.track, mode_.width_px, mode_.height_px);
+  if (!tracker) return tl::unexpected(tracker.error());
+  auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
+  if (!schedule) return tl::unexpected(schedule.error());
+
+  const bool live = config_.run.pace == config::Pace::kLive;
+  const Clock& clock = live ? static_cast<const Clock&>(real_clock_) : stamp_clock_;
+  runner_ = std::make_unique<runtime::StageRunner>(
+      clock, *schedule, live ? runtime::BudgetSource::kClock : runtime::BudgetSource::kUnits, links_.motion_stop);
+  const behavior::LearnedSize learned{model->width_px, model->height_px};
+  vision_ = std::make_unique<VisionLoop>(*runner_, std::move(*tracker), behavior::Follow(config_.follow, learned),
+                                         config_.camera.pinhole, mode_.width_px, mode_.height_px);
+  return vision_->bind();
+}
+
+Result<void> Robot::open_outputs() {
+  RunOutputs outputs;
+  if (!options_.csv.empty()) {
+    auto csv = app::TextFile::create(options_.csv);
+    if (!csv) return tl::unexpected(csv.error());
+    if (auto head = csv->add_line(run_csv_head()); !head) return head;
+    outputs.csv.emplace(std::move(*csv));
+  }
+  if (!options_.video.empty()) {
+    outputs.overlay.emplace(mode_.width_px, mode_.height_px);
+    auto video =
+        app::VideoWriter::create(options_.video, outputs.overlay->picture_size(), 1.0 / to_seconds(mode_.frame_period));
+    if (!video) return tl::unexpected(video.error());
+    outputs.video.emplace(std::move(*video));
+  }
+  housekeeping_ = std::make_unique<HousekeepingTask>(links_, runner_->schedule(), std::move(outputs));
+  return {};
+}
+
+Result<void> Robot::open_base() {
+  motion_ = std::make_unique<MotionLoop>(std::make_unique<hal::KinematicDrive>(config_.drive), config_.motion,
+                                         options_.dry_run ? MotionLoop::Mode::kDryRun : MotionLoop::Mode::kLive);
+  if (auto started = motion_->start(); !started) return started;
+  std::vector<hal::DummyLine> lines;
+  if (!config_.switches.arming_line.empty()) {
+    lines.push_back({config_.switches.arming_line, hal::LineDirection::kInput, false});
+  }
+  switches_ = std::make_unique<hal::DummySwitches>(std::move(lines));
+  return switches_->start();
+}
+
+Result<void> Robot::run(StopRequest& stop) {
+  if (config_.run.pace == config::Pace::kLive) return run_live(stop);
+  run_lock_step(stop);
+  return {};
+}
+
+}  // namespace cgsr::robot

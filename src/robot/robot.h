@@ -1,0 +1,73 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/camera.h"
+#include "hal/switches.h"
+#include "pipeline/motion_loop.h"
+#include "pipeline/vision_loop.h"
+#include "platform/clock.h"
+#include "platform/stop.h"
+#include "src/config/robot.h"
+#include "src/robot/housekeeping_task.h"
+#include "src/robot/links.h"
+
+namespace cgsr::robot {
+
+/// What the command line adds to a robot's file.
+struct RunOptions {
+  bool dry_run = false;
+  bool arm = false;
+  double duration_s = 0.0;  ///< 0: until the images end or a signal comes.
+  std::string csv;
+  std::string video;
+};
+
+/// A robot, put together from its file: devices, loops and what connects them. Boot order: model, camera, schedule, stages, outputs, base,
+/// switches; what fails is said and nothing behind it is touched.
+class Robot {
+ public:
+  static Result<std::unique_ptr<Robot>> build(const config::Robot& config, const RunOptions& options);
+  ~Robot();
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+
+  /// Runs until the images end, the duration is over or `stop` is requested; zero is the last command in any case.
+  Result<void> run(StopRequest& stop);
+
+  [[nodiscard]] const config::Robot& config() const { return config_; }
+  [[nodiscard]] const hal::CameraMode& camera_mode() const { return mode_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] const runtime::Schedule& schedule() const { return runner_->schedule(); }
+  [[nodiscard]] const Links& links() const { return links_; }
+  [[nodiscard]] HousekeepingTask& housekeeping() { return *housekeeping_; }
+
+ private:
+  Robot(const config::Robot& config, const RunOptions& options);
+
+  Result<void> open_camera();
+  Result<void> make_loops();
+  Result<void> open_outputs();
+  Result<void> open_base();
+
+  void run_lock_step(StopRequest& stop);
+  Result<void> run_live(StopRequest& stop);
+
+  config::Robot config_;
+  RunOptions options_;
+  RealClock real_clock_;
+  SimulatedClock stamp_clock_;
+  std::unique_ptr<hal::Camera> camera_;  // before everything that holds leases, so that it goes after them
+  hal::CameraMode mode_;
+  Links links_;
+  std::vector<std::string> notes_;
+  std::unique_ptr<runtime::StageRunner> runner_;
+  std::unique_ptr<VisionLoop> vision_;
+  std::unique_ptr<MotionLoop> motion_;
+  std::unique_ptr<hal::Switches> switches_;
+  std::unique_ptr<HousekeepingTask> housekeeping_;
+};
+
+}  // namespace cgsr::robot

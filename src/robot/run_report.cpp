@@ -1,0 +1,101 @@
+#include "src/robot/run_report.h"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "src/config/canonical.h"
+
+namespace cgsr::robot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class Visitor>
+void visit_rings(const Links& links, Visitor visit) {
+  visit("images", links.images.statistics());
+  visit("goals", links.goals.statistics());
+  visit("arm_requests", links.arm_requests.statistics());
+  visit("reports", links.reports.statistics());
+  visit("pictures", links.pictures.statistics());
+  visit("motions", links.motions.statistics());
+}
+
+Json stages_json(const runtime::StageTable& table) {
+  Json stages = Json::object();
+  for (const auto& stage : table.stages()) {
+    stages[stage.name] = {{"runs", stage.runs},         {"skips", stage.skips},        {"overruns", stage.overruns},
+                          {"faults", stage.faults},     {"mean_us", stage.mean_us},    {"p99_us", stage.p99_us},
+                          {"worst_us", stage.worst_us}, {"budget_us", stage.budget_us}};
+  }
+  return stages;
+}
+
+Json motion_json(const RunTally& tally) {
+  const auto& last = tally.last_motion;
+  return {{"beats", tally.beats},
+          {"beats_in_motion", tally.beats_in_motion},
+          {"fastest_mps", tally.fastest_mps},
+          {"fastest_radps", tally.fastest_radps},
+          {"last_command", {last.commanded.forward_mps, last.commanded.left_radps}},
+          {"odometry", {last.odometry.x_m, last.odometry.y_m, last.odometry.heading_rad}},
+          {"stop_cause", text(last.cause)},
+          {"latched", text(last.latched)}};
+}
+
+}  // namespace
+
+std::string summary_json(Robot& robot, const std::string& ended_by) {
+  auto& housekeeping = robot.housekeeping();
+  const RunTally& tally = housekeeping.tally();
+  const auto& capture = robot.links().capture;
+  Json json;
+  json["images"] = tally.frames - tally.without_image;
+  json["config_sha256"] = config::hash(robot.config());
+  json["color_sha256"] = config::hash(robot.config().color);
+  json["outputs_sha256"] = housekeeping.outputs_sha256();
+  json["inputs_sha256"] = housekeeping.inputs_sha256();
+  json["inputs_images"] = tally.pictures;
+  json["ended_by"] = ended_by;
+  json["frames"] = {
+      {"all", tally.frames}, {"without_image", tally.without_image}, {"late", housekeeping.table().frames().late}};
+  json["capture"] = {{"images", capture.images.load()},
+                     {"timeouts", capture.timeouts.load()},
+                     {"no_slot", capture.no_slot.load()},
+                     {"corrupt", capture.corrupt.load()},
+                     {"disconnected", capture.disconnected.load()}};
+  json["found"] = tally.found;
+  json["motion"] = motion_json(tally);
+  json["stages"] = stages_json(housekeeping.table());
+  visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
+    json["rings"][name] = {{"capacity", ring.capacity},
+                           {"high_water", ring.high_water},
+                           {"pushed", ring.pushed},
+                           {"dropped", ring.dropped},
+                           {"skipped", ring.skipped}};
+  });
+  return json.dump(1) + "\n";
+}
+
+std::string summary_text(Robot& robot, const std::string& ended_by) {
+  auto& housekeeping = robot.housekeeping();
+  const RunTally& tally = housekeeping.tally();
+  const auto& last = tally.last_motion;
+  std::string text = fmt::format("\nended by {}: {} images ({} frames without one), object found in {}\n", ended_by,
+                                 tally.frames - tally.without_image, tally.without_image, tally.found);
+  text += fmt::format(
+      "motion: {} beats, {} of them in motion, fastest {:.2f} m/s and {:.2f} rad/s, odometry x {:.2f} m y {:.2f} m "
+      "heading {:.2f} rad\n",
+      tally.beats, tally.beats_in_motion, tally.fastest_mps, tally.fastest_radps, last.odometry.x_m, last.odometry.y_m,
+      last.odometry.heading_rad);
+  text += fmt::format("last command {:+.2f} m/s {:+.2f} rad/s ({})\n\n", last.commanded.forward_mps,
+                      last.commanded.left_radps, cgsr::text(last.cause));
+  text += runtime::to_text(housekeeping.table());
+  text += "\nring          capacity  high water  pushed  dropped  skipped\n";
+  visit_rings(robot.links(), [&text](const char* name, const RingStatistics& ring) {
+    text += fmt::format("{:<14}{:>8}{:>12}{:>8}{:>9}{:>9}\n", name, ring.capacity, ring.high_water, ring.pushed,
+                        ring.dropped, ring.skipped);
+  });
+  return text + fmt::format("\nconfiguration {}\n", config::hash(robot.config()));
+}
+
+}  // namespace cgsr::robot
