@@ -32,11 +32,12 @@ bool CaptureTask::step(MonoTime give_up_at) {
       return true;
     case hal::CaptureFailure::kDisconnected:
       count(links_.capture.disconnected);
+      links_.camera_lost.store(true, std::memory_order_release);
       break;
     case hal::CaptureFailure::kEndOfStream:
+      links_.images_ended.store(true, std::memory_order_release);
       break;
   }
-  links_.images_ended.store(true, std::memory_order_release);
   links_.image_came.wake();
   return false;
 }

@@ -33,7 +33,8 @@ struct CaptureCounts {
 struct Links {
   Ring<ImageLease, 4> images;  ///< capture -> vision, which takes the newest.
   WakeUp image_came;
-  std::atomic<bool> images_ended{false};
+  std::atomic<bool> images_ended{false};  ///< the recording is over.
+  std::atomic<bool> camera_lost{false};   ///< the device is gone; also when it was told to stop.
 
   Ring<Goal, 8> goals;  ///< vision -> motion.
   std::atomic<bool> images_in_time{false};

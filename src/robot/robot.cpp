@@ -45,10 +45,10 @@ Result<void> Robot::make_loops() {
   auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
   if (!schedule) return tl::unexpected(schedule.error());
 
+  // Stages are measured in real time either way; in lock-step nothing follows from it.
   const bool live = config_.run.pace == config::Pace::kLive;
-  const Clock& clock = live ? static_cast<const Clock&>(real_clock_) : stamp_clock_;
   runner_ = std::make_unique<runtime::StageRunner>(
-      clock, *schedule, live ? runtime::BudgetSource::kClock : runtime::BudgetSource::kUnits, links_.motion_stop);
+      real_clock_, *schedule, live ? runtime::BudgetSource::kClock : runtime::BudgetSource::kUnits, links_.motion_stop);
   const behavior::LearnedSize learned{model->width_px, model->height_px};
   vision_ = std::make_unique<VisionLoop>(*runner_, std::move(*tracker), behavior::Follow(config_.follow, learned),
                                          config_.camera.pinhole, mode_.width_px, mode_.height_px);

@@ -1,0 +1,224 @@
+// What a user gets wrong: each is refused with a message that names it, nothing crashes, nothing half-done stays behind.
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class BadInputFault : public ::testing::Test {
+ protected:
+  Outcome track(const std::string& input, const std::string& region) {
+    return run_cgsr({"track", "--input", input, "--learn", region, "--csv", scratch_ / "t.csv"});
+  }
+  std::string images(int count = 3) {
+    region_ = make_images(scratch_ / "images", count);
+    return scratch_ / "images";
+  }
+  std::string model() {
+    const auto outcome = run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "m"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    return scratch_ / "m";
+  }
+
+  ScratchFolder scratch_;
+  std::string region_ = "40,80,60,80";
+};
+
+void expect_refused(const Outcome& outcome, const std::string& words) {
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.errors;
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("error: "), HasSubstr(words)));
+}
+
+TEST_F(BadInputFault, NoFile) {
+  expect_refused(track(scratch_ / "none.avi", region_), "none.avi");
+}
+
+TEST_F(BadInputFault, NotAVideo) {
+  write_text(scratch_ / "words.avi", "these are words, not pictures\n");
+  expect_refused(track(scratch_ / "words.avi", region_), "words.avi");
+}
+
+TEST_F(BadInputFault, ZeroLength) {
+  write_text(scratch_ / "empty.mp4", "");
+  expect_refused(track(scratch_ / "empty.mp4", region_), "empty.mp4");
+}
+
+TEST_F(BadInputFault, FolderWithoutImages) {
+  std::filesystem::create_directories(scratch_.path() / "void");
+  expect_refused(track(scratch_ / "void", region_), "void");
+}
+
+TEST_F(BadInputFault, TruncatedVideoIsTrackedAsFarAsItGoes) {
+  const auto folder = images(30);
+  {
+    cv::VideoWriter writer(scratch_ / "whole.avi", cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25.0, {320, 240});
+    for (int i = 0; i < 30; ++i) writer.write(cv::imread(fmt::format("{}/{:04}.png", folder, i)));
+  }
+  const auto bytes = read_text(scratch_ / "whole.avi");
+  write_text(scratch_ / "half.avi", bytes.substr(0, bytes.size() / 2));
+  const auto outcome = track(scratch_ / "half.avi", region_);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto text = read_text(scratch_ / "t.csv");
+  const auto rows = std::count(text.begin(), text.end(), '\n');
+  EXPECT_GT(rows, 5);
+  EXPECT_LT(rows, 31);
+}
+
+TEST_F(BadInputFault, ImageSizeChangesMidway) {
+  const auto folder = images(4);
+  cv::imwrite(folder + "/0002.png", cv::Mat(100, 100, CV_8UC3, cv::Scalar(1, 2, 3)));
+  const auto outcome = track(folder, region_);
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, HasSubstr("100x100"));
+  EXPECT_THAT(read_text(scratch_ / "t.csv"), AllOf(HasSubstr("\n2,0,"), HasSubstr("\n3,1,")));
+}
+
+TEST_F(BadInputFault, GreyVideoIsASingleColour) {
+  const auto folder = images(3);
+  for (int i = 0; i < 3; ++i) {
+    cv::Mat image = cv::imread(fmt::format("{}/{:04}.png", folder, i), cv::IMREAD_GRAYSCALE);
+    cv::imwrite(fmt::format("{}/{:04}.png", folder, i), image);
+  }
+  const auto outcome = track(folder, region_);
+  expect_refused(outcome, "colour");
+}
+
+TEST_F(BadInputFault, RegionOutsideTheImage) {
+  expect_refused(track(images(), "400,80,60,80"), "400");
+}
+
+TEST_F(BadInputFault, RegionOfOnePixel) {
+  expect_refused(track(images(), "40,80,1,1"), "too small");
+}
+
+TEST_F(BadInputFault, RegionThatIsNone) {
+  expect_refused(track(images(), "40,80,sixty,80"), "sixty");
+  expect_refused(track(images(), "40,80,nan,80"), "nan");
+}
+
+TEST_F(BadInputFault, SingleColouredRegionIsRefusedOrWidenedWithTheReason) {
+  const auto folder = images();
+  const auto inside = run_cgsr({"learn", "--input", folder, "--region", "44,84,50,30", "--output", scratch_ / "m"});
+  if (inside.exit_code == 0) {
+    EXPECT_THAT(inside.output, HasSubstr("widened"));
+  } else {
+    expect_refused(inside, "colour");
+  }
+  cv::imwrite(scratch_ / "plain.png", cv::Mat(240, 320, CV_8UC3, cv::Scalar(40, 40, 220)));
+  expect_refused(
+      run_cgsr({"learn", "--input", scratch_ / "plain.png", "--region", "100,80,60,60", "--output", scratch_ / "p"}),
+      "colour");
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "p"));
+}
+
+TEST_F(BadInputFault, DamagedModel) {
+  auto bytes = read_text(model());
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+  write_text(scratch_ / "damaged", bytes);
+  expect_refused(run_cgsr({"track", "--input", scratch_ / "images", "--model", scratch_ / "damaged"}), "damaged");
+}
+
+TEST_F(BadInputFault, NotAModel) {
+  images();
+  write_text(scratch_ / "words", "not a model");
+  expect_refused(run_cgsr({"track", "--input", scratch_ / "images", "--model", scratch_ / "words"}), "words");
+}
+
+TEST_F(BadInputFault, EveryErrorOfAConfigurationAtOnceWithItsLine) {
+  write_text(scratch_ / "bad.toml", "[run]\npace = \"slow\"\nspeed = 3\n[stage.track]\nbudget_us = 90000\n");
+  const auto outcome = run_cgsr({"check", "--config", scratch_ / "bad.toml"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("bad.toml:2"), HasSubstr("bad.toml:3"), HasSubstr("bad.toml:5"),
+                                    HasSubstr("100..33000")));
+}
+
+TEST_F(BadInputFault, MalformedConfiguration) {
+  write_text(scratch_ / "bad.toml", "[run\npace = 1\n");
+  expect_refused(run_cgsr({"check", "--config", scratch_ / "bad.toml"}), "bad.toml:1");
+}
+
+TEST_F(BadInputFault, ScheduleThatDoesNotFitShowsTheSum) {
+  auto text = read_text(CGSR_SOURCE_DIR "/config/robots/video.toml");
+  for (std::size_t at = 0; (at = text.find("budget_us = ", at)) != std::string::npos; at += 10) {
+    text.replace(at, text.find_first_of(" #", at + 12) - at, "budget_us = 33000");
+  }
+  write_text(scratch_ / "full.toml", text);
+  const auto outcome = run_cgsr({"check", "--config", scratch_ / "full.toml", "--input", images(), "--model", model()});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("99000"));
+}
+
+TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {
+  const auto outcome =
+      run_cgsr({"track", "--input", images(), "--learn", region_, "--csv", scratch_ / "no/such/folder/t.csv"});
+  expect_refused(outcome, "no/such/folder/t.csv");
+  expect_refused(run_cgsr({"track", "--input", images(), "--learn", region_, "--video", scratch_ / "no/such/t.avi"}),
+                 "no/such/t.avi");
+  expect_refused(run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "no/such/m"}),
+                 "no/such/m");
+}
+
+TEST_F(BadInputFault, FullDisk) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  expect_refused(run_cgsr({"track", "--input", images(), "--learn", region_, "--csv", "/dev/full"}), "/dev/full");
+}
+
+TEST_F(BadInputFault, NoTerminalMeansNoControlCharacters) {
+  const auto outcome = track(images(20), region_);
+  EXPECT_THAT(outcome.errors + outcome.output, Not(HasSubstr("\033")));
+  EXPECT_THAT(outcome.errors + outcome.output, Not(HasSubstr("\r")));
+}
+
+TEST_F(BadInputFault, KilledMidwayLeavesReadableOutput) {
+  const auto folder = images(2000);
+  RunningCgsr running(
+      {"track", "--input", folder, "--learn", region_, "--csv", scratch_ / "t.csv", "--video", scratch_ / "t.avi"});
+  const auto rows = [&] {
+    const auto text = read_text(scratch_ / "t.csv");
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  while (rows() < 40 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  running.send(SIGKILL);
+  EXPECT_EQ(running.wait().exit_code, 128 + SIGKILL) << "it ended before it could be killed: make more images";
+  EXPECT_GE(rows(), 40);
+  cv::VideoCapture video(scratch_ / "t.avi");
+  cv::Mat picture;
+  int pictures = 0;
+  while (video.read(picture)) ++pictures;
+  EXPECT_GE(pictures, 20);
+}
+
+TEST_F(BadInputFault, InterruptedTrackEndsInOrderAndSaysSo) {
+  const auto folder = images(2000);
+  RunningCgsr running({"track", "--input", folder, "--learn", region_, "--csv", scratch_ / "t.csv"});
+  while (read_text(scratch_ / "t.csv").size() < 2000 && !running.ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  running.send(SIGINT);
+  const auto outcome = running.wait();
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("until it was stopped"));
+}
+
+TEST_F(BadInputFault, CommandLineThatIsNotUnderstood) {
+  EXPECT_EQ(run_cgsr({}).exit_code, 2);
+  EXPECT_EQ(run_cgsr({"dance"}).exit_code, 2);
+  EXPECT_EQ(run_cgsr({"track", "--input", "x"}).exit_code, 2);
+  EXPECT_EQ(run_cgsr({"track", "--input", "x", "--learn", "1,2,3,4", "--model", "m"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing

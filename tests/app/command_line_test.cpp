@@ -1,0 +1,139 @@
+// The commands do what they say, in the words the README uses.
+#include <filesystem>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(CommandLine, HelpNamesEveryCommand) {
+  const auto help = run_cgsr({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* command : {"run", "check", "learn", "track", "reproduce"})
+    EXPECT_THAT(help.output, HasSubstr(command));
+}
+
+TEST(CommandLine, EveryCommandExplainsItself) {
+  for (const char* command : {"run", "check", "learn", "track"}) {
+    const auto help = run_cgsr({command, "--help"});
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_THAT(help.output, HasSubstr("--config")) << command;
+  }
+}
+
+TEST(CommandLine, LearnWritesAModelAndAPicture) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 1);
+  const auto learned =
+      run_cgsr({"learn", "--input", scratch / "images", "--region", region, "--output", scratch / "m"});
+  ASSERT_EQ(learned.exit_code, 0) << learned.errors;
+  EXPECT_THAT(learned.output, HasSubstr("distinctiveness"));
+  EXPECT_TRUE(std::filesystem::exists(scratch / "m"));
+  EXPECT_FALSE(cv::imread(scratch / "m.png").empty());
+}
+
+TEST(CommandLine, LearnTakesSeveralViews) {
+  const ScratchFolder scratch;
+  make_images(scratch / "images", 5);
+  const auto learned = run_cgsr({"learn", "--input", scratch / "images", "--region", "40,80,60,80", "--at", "0",
+                                 "--region", "48,80,60,80", "--at", "4", "--output", scratch / "m"});
+  EXPECT_EQ(learned.exit_code, 0) << learned.errors;
+}
+
+TEST(CommandLine, TrackWritesTheColumnsOfTheDesignAndFindsTheObject) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 20);
+  std::string truth;
+  for (int i = 0; i < 20; ++i) truth += std::to_string(40 + 2 * i) + ",80,60,80\n";
+  write_text(scratch / "truth.txt", truth);
+  const auto tracked =
+      run_cgsr({"track", "--input", scratch / "images", "--learn", region, "--truth", scratch / "truth.txt", "--csv",
+                scratch / "t.csv", "--json", scratch / "t.json", "--video", scratch / "t.avi"});
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.errors;
+
+  const auto rows = lines_of(read_text(scratch / "t.csv"));
+  ASSERT_EQ(rows.size(), 21u);
+  EXPECT_EQ(rows[0], "frame,found,x,y,width,height,divergence,light_r,light_g,light_b");
+  EXPECT_THAT(rows[1], StartsWith("0,1,40.00,80.00,60.00,80.00,"));
+  EXPECT_THAT(rows[20], StartsWith("19,1,"));
+
+  const auto json = nlohmann::json::parse(read_text(scratch / "t.json"));
+  EXPECT_EQ(json["images"], 19);
+  EXPECT_EQ(json["truth"]["images"], 19);
+  EXPECT_GT(json["truth"]["iou"].get<double>(), 0.7);
+  EXPECT_EQ(json["config_sha256"].get<std::string>().size(), 64u);
+
+  cv::VideoCapture video(scratch / "t.avi");
+  EXPECT_EQ(static_cast<int>(video.get(cv::CAP_PROP_FRAME_COUNT)), 20);
+}
+
+TEST(CommandLine, TrackLearnsFromALaterImage) {
+  const ScratchFolder scratch;
+  make_images(scratch / "images", 12);
+  const auto tracked = run_cgsr({"track", "--input", scratch / "images", "--learn", "60,80,60,80", "--learn-frame",
+                                 "10", "--csv", scratch / "t.csv"});
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.errors;
+  const auto rows = lines_of(read_text(scratch / "t.csv"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_THAT(rows[1], StartsWith("10,1,60.00,"));
+}
+
+TEST(CommandLine, TrackUsesASavedModelAsWellAsAFreshOne) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 8);
+  ASSERT_EQ(run_cgsr({"learn", "--input", scratch / "images", "--region", region, "--output", scratch / "m"}).exit_code,
+            0);
+  ASSERT_EQ(run_cgsr({"track", "--input", scratch / "images", "--model", scratch / "m", "--csv", scratch / "t.csv"})
+                .exit_code,
+            0);
+  const auto rows = lines_of(read_text(scratch / "t.csv"));
+  ASSERT_EQ(rows.size(), 9u);
+  EXPECT_THAT(rows[8], StartsWith("7,1,"));
+}
+
+TEST(CommandLine, PlainModeHasAConfigurationOfItsOwn) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 3);
+  const auto hash_of = [&](const char* mode) {
+    EXPECT_EQ(
+        run_cgsr({"track", "--input", scratch / "images", "--learn", region, "--mode", mode, "--json", scratch / "j"})
+            .exit_code,
+        0);
+    return nlohmann::json::parse(read_text(scratch / "j"))["config_sha256"].get<std::string>();
+  };
+  EXPECT_NE(hash_of("plain"), hash_of("full"));
+}
+
+TEST(CommandLine, CheckLooksAtEverythingAndMovesNothing) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 2);
+  ASSERT_EQ(run_cgsr({"learn", "--input", scratch / "images", "--region", region, "--output", scratch / "m"}).exit_code,
+            0);
+  const auto good = run_cgsr({"check", "--config", CGSR_SOURCE_DIR "/config/robots/video.toml", "--input",
+                              scratch / "images", "--model", scratch / "m"});
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  const auto bad = run_cgsr({"check", "--config", CGSR_SOURCE_DIR "/config/robots/video.toml", "--input",
+                             scratch / "none", "--model", scratch / "none"});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_EQ(lines_of(bad.errors).size(), 2u) << bad.errors;
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing

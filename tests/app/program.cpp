@@ -1,0 +1,108 @@
+#include "tests/app/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <fmt/core.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+extern char** environ;
+
+namespace cgsr::app::testing {
+
+RunningCgsr::RunningCgsr(const std::vector<std::string>& arguments) {
+  std::string name = (std::filesystem::temp_directory_path() / "cgsr-test-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  folder_ = name;
+
+  std::vector<std::string> words{CGSR_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  const auto open_as = [&](int descriptor, const char* file) {
+    posix_spawn_file_actions_addopen(&files, descriptor, (folder_ / file).c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+  };
+  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  open_as(STDOUT_FILENO, "output");
+  open_as(STDERR_FILENO, "errors");
+  const int failed = posix_spawn(&process_, CGSR_PROGRAM, &files, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  if (failed != 0) throw std::runtime_error("cgsr could not be started");
+}
+
+RunningCgsr::~RunningCgsr() {
+  if (!reaped_) {
+    kill(process_, SIGKILL);
+    waitpid(process_, &status_, 0);
+  }
+  std::filesystem::remove_all(folder_);
+}
+
+void RunningCgsr::send(int signal) const {
+  kill(process_, signal);
+}
+
+bool RunningCgsr::ended() {
+  if (!reaped_) reaped_ = waitpid(process_, &status_, WNOHANG) == process_;
+  return reaped_;
+}
+
+Outcome RunningCgsr::wait() {
+  if (!reaped_) waitpid(process_, &status_, 0);
+  reaped_ = true;
+  const int code = WIFEXITED(status_) ? WEXITSTATUS(status_) : 128 + WTERMSIG(status_);
+  return {code, read_text(folder_ / "output"), read_text(folder_ / "errors")};
+}
+
+Outcome run_cgsr(const std::vector<std::string>& arguments) {
+  return RunningCgsr(arguments).wait();
+}
+
+ScratchFolder::ScratchFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "cgsr-test-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::filesystem::remove_all(path_);
+}
+
+std::string make_images(const std::filesystem::path& folder, int count) {
+  std::filesystem::create_directories(folder);
+  cv::Mat ground(240, 320, CV_8UC3);
+  cv::RNG random(7);
+  random.fill(ground, cv::RNG::UNIFORM, 90, 150);
+  cv::blur(ground, ground, {9, 9});
+  for (int i = 0; i < count; ++i) {
+    cv::Mat image = ground.clone();
+    const cv::Rect patch(40 + 2 * i % 200, 80, 60, 80);
+    image(patch).setTo(cv::Scalar(40, 40, 220));
+    image(cv::Rect(patch.x, patch.y + 40, 60, 40)).setTo(cv::Scalar(200, 90, 30));
+    cv::imwrite((folder / fmt::format("{:04}.png", i)).string(), image);
+  }
+  return "40,80,60,80";
+}
+
+std::string read_text(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+}  // namespace cgsr::app::testing

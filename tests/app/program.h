@@ -1,0 +1,62 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cgsr::app::testing {
+
+/// What a finished program left behind.
+struct Outcome {
+  int exit_code = -1;  ///< 128 + signal when it was killed.
+  std::string output;  ///< standard output.
+  std::string errors;  ///< standard error.
+};
+
+/// Runs cgsr with `arguments` and waits for it. Neither of its streams is a terminal.
+Outcome run_cgsr(const std::vector<std::string>& arguments);
+
+/// Starts cgsr and returns at once.
+class RunningCgsr {
+ public:
+  explicit RunningCgsr(const std::vector<std::string>& arguments);
+  ~RunningCgsr();
+  RunningCgsr(const RunningCgsr&) = delete;
+  RunningCgsr& operator=(const RunningCgsr&) = delete;
+
+  void send(int signal) const;
+  Outcome wait();
+  [[nodiscard]] bool ended();
+
+ private:
+  std::filesystem::path folder_;
+  pid_t process_ = -1;
+  int status_ = 0;
+  bool reaped_ = false;
+};
+
+/// A folder that is gone when the test ends.
+class ScratchFolder {
+ public:
+  ScratchFolder();
+  ~ScratchFolder();
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A short made video folder: a two-coloured patch of 60x80 px that moves over cluttered ground.
+/// \return the region of the patch in image 0 as --region takes it.
+std::string make_images(const std::filesystem::path& folder, int count);
+
+std::string read_text(const std::string& path);
+void write_text(const std::string& path, const std::string& text);
+
+}  // namespace cgsr::app::testing

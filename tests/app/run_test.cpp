@@ -1,0 +1,112 @@
+// The robot's service, from outside: repeatable in lock-step, ordered in its end.
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class RunReplay : public ::testing::Test {
+ protected:
+  RunReplay() {
+    const auto region = make_images(scratch_ / "images", 60);
+    EXPECT_EQ(
+        run_cgsr({"learn", "--input", scratch_ / "images", "--region", region, "--output", scratch_ / "m"}).exit_code,
+        0);
+  }
+
+  std::vector<std::string> arguments(const std::string& config, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{
+        "run",    "--config",           config, "--input", scratch_ / "images", "--model", scratch_ / "m",
+        "--json", scratch_ / "run.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  nlohmann::json summary() { return nlohmann::json::parse(read_text(scratch_ / "run.json")); }
+
+  /// The shipped file, but live: images at their own rate, a thread per task.
+  std::string live_config() {
+    auto text = read_text(shipped_);
+    text.replace(text.find("\"lock_step\""), 11, "\"live\"");
+    text.replace(text.find("\"as_fast_as_possible\""), 21, "\"own_rate\"");
+    text.replace(text.find("loop = false"), 12, "loop = true");
+    write_text(scratch_ / "live.toml", text);
+    return scratch_ / "live.toml";
+  }
+
+  ScratchFolder scratch_;
+  std::string shipped_ = CGSR_SOURCE_DIR "/config/robots/video.toml";
+};
+
+TEST_F(RunReplay, LockStepGivesTheSameBytesEveryTime) {
+  ASSERT_EQ(run_cgsr(arguments(shipped_)).exit_code, 0);
+  const auto first = summary();
+  ASSERT_EQ(run_cgsr(arguments(shipped_)).exit_code, 0);
+  const auto second = summary();
+  EXPECT_EQ(first["images"], 60);
+  EXPECT_EQ(first["inputs_images"], 60);
+  EXPECT_EQ(first["outputs_sha256"], second["outputs_sha256"]);
+  EXPECT_EQ(first["inputs_sha256"], second["inputs_sha256"]);
+  EXPECT_GT(first["motion"]["beats_in_motion"], 0);
+  EXPECT_EQ(first["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
+}
+
+TEST_F(RunReplay, ADryRunComputesEverythingAndCommandsNothing) {
+  ASSERT_EQ(run_cgsr(arguments(shipped_, {"--dry-run"})).exit_code, 0);
+  EXPECT_EQ(summary()["motion"]["beats_in_motion"], 0);
+  EXPECT_EQ(summary()["motion"]["odometry"], nlohmann::json::array({0.0, 0.0, 0.0}));
+  EXPECT_GT(summary()["found"], 50);
+}
+
+TEST_F(RunReplay, WithoutArmingItStandsStill) {
+  auto text = read_text(shipped_);
+  text.replace(text.find("armed_at_start = true"), 21, "armed_at_start = false");
+  write_text(scratch_ / "disarmed.toml", text);
+  ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml")).exit_code, 0);
+  EXPECT_EQ(summary()["motion"]["beats_in_motion"], 0);
+  ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml", {"--arm"})).exit_code, 0);
+  EXPECT_GT(summary()["motion"]["beats_in_motion"], 0);
+}
+
+TEST_F(RunReplay, LiveRunsEndAfterTheirDurationWithZeroAsTheLastCommand) {
+  const auto outcome = run_cgsr(arguments(live_config(), {"--duration", "2.5"}));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto run = summary();
+  EXPECT_EQ(run["ended_by"], "the duration");
+  EXPECT_GT(run["images"], 60);
+  EXPECT_EQ(run["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
+  for (const auto& [name, stage] : run["stages"].items()) EXPECT_GT(stage["worst_us"], 0.0) << name;
+}
+
+// Whenever SIGTERM comes, from the first moment of the boot on: the program ends within 200 ms, in order, standing still.
+TEST_F(RunReplay, SigtermInAnyPhaseEndsWithin200Milliseconds) {
+  const auto config = live_config();
+  for (const int delay_ms : {0, 2, 5, 10, 20, 40, 80, 160, 320, 1500, 2400}) {
+    std::filesystem::remove(scratch_ / "run.json");
+    RunningCgsr running(arguments(config));
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    const auto begin = std::chrono::steady_clock::now();
+    running.send(SIGTERM);
+    const auto outcome = running.wait();
+    const auto took = std::chrono::steady_clock::now() - begin;
+    if (outcome.exit_code == 128 + SIGTERM) {  // before main there is nobody to catch it, and nothing that moves
+      EXPECT_EQ(outcome.errors, "") << delay_ms << " ms: killed although it had begun";
+      continue;
+    }
+    ASSERT_EQ(outcome.exit_code, 0) << delay_ms << " ms: " << outcome.errors;
+    EXPECT_LT(took, std::chrono::milliseconds(200)) << delay_ms;
+    EXPECT_EQ(summary()["ended_by"], "SIGTERM") << delay_ms;
+    EXPECT_EQ(summary()["motion"]["last_command"], nlohmann::json::array({0.0, 0.0})) << delay_ms;
+  }
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
