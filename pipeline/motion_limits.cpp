@@ -31,25 +31,28 @@ hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits) {
           std::clamp(goal.left_radps, -limits.turn_limit_radps, limits.turn_limit_radps)};
 }
 
-double speed_within_area(const hal::Twist& command, const hal::Odometry& pose, double age_s,
+double speed_within_area(double forward_mps, const hal::Odometry& odometry, double age_s,
                          const MotionParameters& limits) {
   const KeepInParameters& area = limits.keep_in;
-  const double speed = std::abs(command.forward_mps);
-  if (!area.enabled || speed == 0.0) return command.forward_mps;
+  if (!area.enabled || forward_mps == 0.0) return forward_mps;
 
+  const double wanted = std::abs(forward_mps);
+  const double present = std::copysign(1.0, forward_mps) * odometry.velocity.forward_mps;
   const double deceleration = limits.deceleration_limit_mps2;
   const double unbraked_s = age_s + limits.reaction_s;
-  const double spread = std::min(kPi, std::abs(command.left_radps) * (unbraked_s + speed / deceleration));
-  const double travel_rad = pose.heading_rad + (command.forward_mps < 0.0 ? kPi : 0.0);
-  const double way = std::min({way_to_edge(area.x_max_m - pose.x_m, 0.0, travel_rad, spread),
-                               way_to_edge(area.y_max_m - pose.y_m, kPi / 2.0, travel_rad, spread),
-                               way_to_edge(pose.x_m - area.x_min_m, kPi, travel_rad, spread),
-                               way_to_edge(pose.y_m - area.y_min_m, -kPi / 2.0, travel_rad, spread)});
+  const double until_standing_s = unbraked_s + std::max(wanted, present) / deceleration;
+  const double spread = std::min(kPi, limits.turn_limit_radps * until_standing_s);
+  const double travel_rad = odometry.heading_rad + (forward_mps < 0.0 ? kPi : 0.0);
+  const double way = std::min({way_to_edge(area.x_max_m - odometry.x_m, 0.0, travel_rad, spread),
+                               way_to_edge(area.y_max_m - odometry.y_m, kPi / 2.0, travel_rad, spread),
+                               way_to_edge(odometry.x_m - area.x_min_m, kPi, travel_rad, spread),
+                               way_to_edge(odometry.y_m - area.y_min_m, -kPi / 2.0, travel_rad, spread)});
 
-  // v t + v^2 / (2 a) = way, solved for v.
+  // Both inequalities, solved for v.
   const double at = deceleration * unbraked_s;
-  const double allowed = std::sqrt(at * at + 2.0 * deceleration * way) - at;
-  return std::copysign(std::min(speed, allowed), command.forward_mps);
+  const double steady = std::sqrt(at * at + 2.0 * deceleration * way) - at;
+  const double braking = std::sqrt(2.0 * deceleration * std::max(0.0, way - present * unbraked_s));
+  return std::copysign(std::min({wanted, steady, braking}), forward_mps);
 }
 
 }  // namespace cgsr

@@ -75,15 +75,16 @@ struct MotionParameters {
 /// \return `goal` within the speed and turn limits.
 hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits);
 
-/// The fastest speed of `command`'s sign, at most its own, from which the robot still stops inside the area:
+/// The fastest speed v of `forward_mps`' sign, at most itself, from which the robot still stops inside the area:
 ///
-///     v t + v^2 / (2 a) <= D    t: age_s + reaction_s, a: the deceleration limit, D: the way to the edge
+///     v t + v^2 / (2 a) <= D    and    u t + v^2 / (2 a) <= D
 ///
-/// D is the shortest over all headings that the robot can reach while it stops at `command`'s turn rate, to either side: a turn
-/// towards the edge is seen coming. Outside the area only motion that leads back in is left.
-/// \param pose  finite; x_m, y_m and heading_rad are read.
-/// \param age_s  of the pose, >= 0.
-double speed_within_area(const hal::Twist& command, const hal::Odometry& pose, double age_s,
+/// t: age_s + reaction_s, in which the robot goes on at the speed u that it has; a: the deceleration limit; D: the way to
+/// the nearest edge over all headings that it can reach until it stands, at the turn limit and to either side. Outside the
+/// area only motion that leads back in is left.
+/// \param odometry  finite.
+/// \param age_s  of the odometry, >= 0.
+double speed_within_area(double forward_mps, const hal::Odometry& odometry, double age_s,
                          const MotionParameters& limits);
 
 }  // namespace cgsr

@@ -17,11 +17,8 @@ bool finite(const hal::Twist& twist) {
 }
 
 bool finite(const hal::Odometry& odometry) {
-  return std::isfinite(odometry.x_m) && std::isfinite(odometry.y_m) && std::isfinite(odometry.heading_rad);
-}
-
-bool latches(StopCause cause) {
-  return cause >= StopCause::kStopRequested && cause <= StopCause::kBadGoal;
+  return std::isfinite(odometry.x_m) && std::isfinite(odometry.y_m) && std::isfinite(odometry.heading_rad) &&
+         finite(odometry.velocity);
 }
 
 StopCause cause_of(hal::DriveFailure failure) {
@@ -37,6 +34,21 @@ StopCause cause_of(hal::DriveFailure failure) {
   return StopCause::kDriveFailed;
 }
 
+StopCause cause_of(hal::DriveFault fault) {
+  switch (fault) {
+    case hal::DriveFault::kNone:
+      return StopCause::kNone;
+    case hal::DriveFault::kBusOff:
+    case hal::DriveFault::kLinkLost:
+      return StopCause::kDriveFailed;
+    case hal::DriveFault::kStarting:
+    case hal::DriveFault::kFeedbackLost:
+      return StopCause::kFeedbackStale;
+    default:
+      return StopCause::kDriveNotReady;
+  }
+}
+
 /// The one to name when both hold.
 StopCause graver(StopCause a, StopCause b) {
   if (a == StopCause::kNone) return b;
@@ -46,40 +58,12 @@ StopCause graver(StopCause a, StopCause b) {
 
 }  // namespace
 
-std::string_view text(StopCause cause) {
-  switch (cause) {
-    case StopCause::kNone:
-      return "nothing stops it";
-    case StopCause::kStopRequested:
-      return "told to stop";
-    case StopCause::kDriveFailed:
-      return "the base does not take commands (bus off, cable, not started)";
-    case StopCause::kDriveNotReady:
-      return "the base refuses motion (emergency stop, disabled, low battery)";
-    case StopCause::kFeedbackStale:
-      return "no usable odometry from the base in time";
-    case StopCause::kSafetyFault:
-      return "a stage of the safety chain is in fault";
-    case StopCause::kBadGoal:
-      return "vision gave a goal that is not finite or from the future";
-    case StopCause::kImagesLate:
-      return "fewer than 90 % of the last 30 images were in time";
-    case StopCause::kGoalStale:
-      return "the newest goal is too old";
-    case StopCause::kNoGoal:
-      return "no goal has come yet";
-    case StopCause::kHeldTooLong:
-      return "stood still for too long on a passing cause";
-    case StopCause::kLoopLate:
-      return "the motion loop was late within the last second";
-    case StopCause::kDisarmed:
-      return "not armed";
-  }
-  return "unknown";
-}
-
 MotionLoop::MotionLoop(std::unique_ptr<hal::Drive> drive, const MotionParameters& parameters, Mode mode)
-    : drive_(std::move(drive)), parameters_(parameters), mode_(mode), arm_when_possible_(parameters.armed_at_start) {}
+    : drive_(std::move(drive)),
+      latch_(dynamic_cast<hal::FaultLatch*>(drive_.get())),
+      parameters_(parameters),
+      mode_(mode),
+      arm_when_possible_(parameters.armed_at_start) {}
 
 MotionLoop::~MotionLoop() {
   stop();
@@ -100,7 +84,7 @@ MotionStatus MotionLoop::step(MonoTime now, const MotionInputs& inputs) {
   take_time(now);
   const StopCause standing = standing_cause(now, inputs);
   disarm_if_due(now, standing);
-  status.arm_refusal = arm(inputs.request, standing);
+  status.arm_refusal = arm(now, inputs.request, standing);
   status.cause = graver(standing, armed_ ? StopCause::kNone : StopCause::kDisarmed);
   send(status.cause == StopCause::kNone ? towards_goal(now, status) : hal::Twist{}, now, status);
 
@@ -109,6 +93,7 @@ MotionStatus MotionLoop::step(MonoTime now, const MotionInputs& inputs) {
   if (goal_) status.goal = goal_->twist;
   status.commanded = commanded_;
   status.armed = armed_;
+  status.drive_fault = drive_fault();
   status.late = late_;
   status.latched = latched_;
   return status;
@@ -145,6 +130,8 @@ StopCause MotionLoop::take_odometry(MonoTime now) {
 
 StopCause MotionLoop::standing_cause(MonoTime now, const MotionInputs& inputs) {
   StopCause cause = graver(take_odometry(now), send_failure_);
+  // Disarmed, a fault that only waits for rearm() must not stand in the way of arming.
+  if (armed_) cause = graver(cause, cause_of(drive_fault()));
   cause = graver(cause, take_goal(now, inputs.goal));
   if (inputs.stop) cause = graver(cause, StopCause::kStopRequested);
   if (!inputs.safety_chain_ok) cause = graver(cause, StopCause::kSafetyFault);
@@ -166,7 +153,7 @@ void MotionLoop::disarm_if_due(MonoTime now, StopCause standing) {
   }
 }
 
-StopCause MotionLoop::arm(ArmRequest request, StopCause standing) {
+StopCause MotionLoop::arm(MonoTime now, ArmRequest request, StopCause standing) {
   if (request == ArmRequest::kDisarm) {
     arm_when_possible_ = false;
     disarm(latched_);
@@ -175,13 +162,24 @@ StopCause MotionLoop::arm(ArmRequest request, StopCause standing) {
   if (armed_ || (request == ArmRequest::kNone && !arm_when_possible_)) return StopCause::kNone;
 
   const StopCause loop = steps_in_time_ < kStepsInTimeToArm ? StopCause::kLoopLate : StopCause::kNone;
-  const StopCause refusal = graver(standing, loop);
+  StopCause refusal = graver(standing, loop);
+  if (refusal == StopCause::kNone) refusal = rearm_drive(now);
   if (refusal == StopCause::kNone) {
     armed_ = true;
     arm_when_possible_ = false;
     latched_ = StopCause::kNone;
   }
   return request == ArmRequest::kArm ? refusal : StopCause::kNone;
+}
+
+StopCause MotionLoop::rearm_drive(MonoTime now) {
+  if (latch_ == nullptr || mode_ == Mode::kDryRun) return StopCause::kNone;
+  const auto rearmed = latch_->rearm(now);
+  return rearmed ? StopCause::kNone : cause_of(rearmed.error());
+}
+
+hal::DriveFault MotionLoop::drive_fault() const {
+  return latch_ == nullptr ? hal::DriveFault::kNone : latch_->fault();
 }
 
 void MotionLoop::disarm(StopCause latched) {
@@ -199,9 +197,9 @@ hal::Twist MotionLoop::towards_goal(MonoTime now, MotionStatus& status) const {
   next.left_radps = behavior::ramp(commanded_.left_radps, goal.left_radps, parameters_.turn_acceleration_limit_radps2,
                                    parameters_.turn_acceleration_limit_radps2, elapsed_s);
 
-  const double turn = std::max(std::abs(next.left_radps), std::abs(goal.left_radps));
-  const double within =
-      speed_within_area({next.forward_mps, turn}, odometry_, to_seconds(now - odometry_.stamp), parameters_);
+  // What is said now holds until the next beat.
+  const double age_s = to_seconds(now - odometry_.stamp + kMotionPeriod);
+  const double within = speed_within_area(next.forward_mps, odometry_, age_s, parameters_);
   status.keep_in_slowed = within != next.forward_mps;
   next.forward_mps = within;
   return next;

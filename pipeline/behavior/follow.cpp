@@ -100,7 +100,7 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
     decision.bearing_rad = last_bearing_rad_;
   }
 
-  const hal::Twist target = wanted(decision);
+  const Velocity target = wanted(decision);
   // A long gap between images must not become a jump of speed.
   const double elapsed_s = std::min(to_seconds(elapsed), parameters_.stale_after_s);
   const double turn_ramp = parameters_.turn_acceleration_limit_radps2;
@@ -137,23 +137,23 @@ FollowState Follow::state_when_unseen(Duration elapsed) {
   return FollowState::kLost;
 }
 
-hal::Twist Follow::wanted(const FollowDecision& decision) const {
-  hal::Twist twist;
+Velocity Follow::wanted(const FollowDecision& decision) const {
+  Velocity velocity;
   if (decision.state == FollowState::kSearching) {
-    twist.left_radps = std::copysign(parameters_.search_turn_radps, last_bearing_rad_);
+    velocity.left_radps = std::copysign(parameters_.search_turn_radps, last_bearing_rad_);
   }
-  if (decision.state != FollowState::kFollowing) return twist;
+  if (decision.state != FollowState::kFollowing) return velocity;
 
   const double bearing = beyond_band(decision.bearing_rad, parameters_.bearing_band_rad);
-  twist.left_radps =
+  velocity.left_radps =
       std::clamp(parameters_.turn_per_s * bearing, -parameters_.turn_limit_radps, parameters_.turn_limit_radps);
 
-  if (decision.distance_m <= 0.0) return twist;  // not known: only turn
+  if (decision.distance_m <= 0.0) return velocity;  // not known: only turn
   const double error_m = beyond_band(decision.distance_m - parameters_.distance_m, parameters_.distance_band_m);
   const double facing = std::max(0.0, 1.0 - std::abs(decision.bearing_rad) / parameters_.turn_first_rad);
-  twist.forward_mps = std::clamp(parameters_.approach_per_s * error_m * facing, -parameters_.backward_limit_mps,
-                                 parameters_.forward_limit_mps);
-  return twist;
+  velocity.forward_mps = std::clamp(parameters_.approach_per_s * error_m * facing, -parameters_.backward_limit_mps,
+                                    parameters_.forward_limit_mps);
+  return velocity;
 }
 
 }  // namespace cgsr::behavior
