@@ -7,7 +7,7 @@
 namespace cgsr::lab {
 
 std::string Setting::config_sha256() const {
-  return config::hash(shipped);
+  return config::hash(configuration);
 }
 
 std::span<const Experiment> experiments() {

@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "platform/error.h"
+#include "src/config/color.h"
 #include "tools/lab/report.h"
-#include "tools/lab/shipped.h"
 
 namespace cgsr::lab {
 
@@ -20,7 +20,7 @@ struct Setting {
   std::optional<int> trials;                  ///< nothing: each table's own number
   std::optional<std::filesystem::path> data;  ///< the folder of real images, where there is one
   bool count = true;                          ///< measure instructions as well, which is slow
-  Shipped shipped;
+  config::Color configuration;
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 
   [[nodiscard]] std::string config_sha256() const;

@@ -37,6 +37,11 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
+/// What adding up ticks leaves of zero is zero.
+double round_zero(double value) {
+  return std::abs(value) < 1e-12 ? 0.0 : value;
+}
+
 /// A straight scale from values to pixels, with about five round ticks.
 struct Axis {
   double low, high, from_px, to_px;
@@ -77,12 +82,12 @@ std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
   for (double value : x.ticks()) {
     svg += fmt::format(
         R"(<line x1="{0:.1f}" y1="{1}" x2="{0:.1f}" y2="{2}" stroke="#eee"/><text x="{0:.1f}" y="{3}" text-anchor="middle">{4:g}</text>)",
-        x.px(value), kTop, kHeight - kBottom, kHeight - kBottom + 16, std::abs(value) < 1e-12 ? 0.0 : value);
+        x.px(value), kTop, kHeight - kBottom, kHeight - kBottom + 16, round_zero(value));
   }
   for (double value : y.ticks()) {
     svg += fmt::format(
         R"(<line x1="{1}" y1="{0:.1f}" x2="{2}" y2="{0:.1f}" stroke="#eee"/><text x="{3}" y="{4:.1f}" text-anchor="end">{5:g}</text>)",
-        y.px(value), kLeft, kWidth - kRight, kLeft - 6, y.px(value) + 4, value);
+        y.px(value), kLeft, kWidth - kRight, kLeft - 6, y.px(value) + 4, round_zero(value));
   }
   svg += fmt::format(R"(<path d="M{0},{1}V{2}H{3}" fill="none" stroke="#444"/>)", kLeft, kTop, kHeight - kBottom,
                      kWidth - kRight);

@@ -115,7 +115,7 @@ int follow_film(const FilmOptions& options) {
   if (!learn_from) return complain(learn_from.error());
   const auto named = std::ranges::find(trackers(), options.tracker, &NamedTracker::name);
   const auto boxes =
-      follow(*named->make(Shipped{}), *film, options.images > 0 ? options.images : film->size(), *learn_from);
+      follow(*named->make(config::Color{}), *film, options.images > 0 ? options.images : film->size(), *learn_from);
   if (!boxes) return complain(boxes.error());
   Boxes truth = film->truth;
   truth.resize(boxes->size());

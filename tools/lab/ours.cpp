@@ -11,7 +11,7 @@ namespace {
 
 class OurTracker final : public BoxTracker {
  public:
-  OurTracker(const Shipped& configuration, Start start) : configuration_(configuration), start_(start) {}
+  OurTracker(const config::Color& configuration, Start start) : configuration_(configuration), start_(start) {}
 
   Result<void> learn(const Image& image, const Box& box) override {
     const std::array samples{color::Sample{image.view(), box}};
@@ -42,7 +42,7 @@ class OurTracker final : public BoxTracker {
   }
 
  private:
-  Shipped configuration_;
+  config::Color configuration_;
   Start start_;
   std::optional<color::Tracker> tracker_;
   std::optional<imaging::ReducedImage> reduced_;
@@ -50,11 +50,11 @@ class OurTracker final : public BoxTracker {
 
 }  // namespace
 
-std::unique_ptr<BoxTracker> make_ours(const Shipped& configuration, Start start) {
+std::unique_ptr<BoxTracker> make_ours(const config::Color& configuration, Start start) {
   return std::make_unique<OurTracker>(configuration, start);
 }
 
-std::unique_ptr<BoxTracker> make_plain(Shipped configuration, Start start) {
+std::unique_ptr<BoxTracker> make_plain(config::Color configuration, Start start) {
   configuration.track.mode = color::TrackMode::kPlain;
   return std::make_unique<OurTracker>(configuration, start);
 }

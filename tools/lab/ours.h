@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "src/config/color.h"
 #include "tools/lab/box_tracker.h"
-#include "tools/lab/shipped.h"
 
 namespace cgsr::lab {
 
@@ -14,9 +14,9 @@ enum class Start {
 };
 
 /// Chapter 3 behind the lab's face. Its stages are marked for tools/count: labels (imaging::reduce) and track (everything else).
-std::unique_ptr<BoxTracker> make_ours(const Shipped& configuration, Start start = Start::kWhereLearned);
+std::unique_ptr<BoxTracker> make_ours(const config::Color& configuration, Start start = Start::kWhereLearned);
 
 /// The same in the dissertation's own mode.
-std::unique_ptr<BoxTracker> make_plain(Shipped configuration, Start start = Start::kWhereLearned);
+std::unique_ptr<BoxTracker> make_plain(config::Color configuration, Start start = Start::kWhereLearned);
 
 }  // namespace cgsr::lab

@@ -11,13 +11,13 @@ namespace cgsr::lab {
 
 Row mean_row(std::string row, std::string quantity, std::string unit, const std::vector<double>& values,
              std::uint64_t seed) {
-  return {std::move(row),
-          std::move(quantity),
-          std::move(unit),
-          std::nullopt,
-          mean(values),
-          bootstrap_mean(values, 1, seed),
-          static_cast<int>(values.size())};
+  const auto trials = static_cast<int>(values.size());
+  const double centre = mean(values);
+  Interval interval = bootstrap_mean(values, 1, seed);
+  // Values that are all the same teach a bootstrap nothing; of shares, a count of all or none says how far the mean may be off.
+  if (unit.empty() && interval.low == interval.high && (centre == 0.0 || centre == 1.0))
+    interval = wilson(centre == 0.0 ? 0 : trials, trials);
+  return {std::move(row), std::move(quantity), std::move(unit), std::nullopt, centre, interval, trials};
 }
 
 Row share_row(std::string row, std::string quantity, int successes, int trials) {

@@ -10,11 +10,11 @@ namespace cgsr::lab {
 
 std::span<const NamedTracker> trackers() {
   static constexpr std::array kTrackers{
-      NamedTracker{"ours", [](const Shipped& shipped) { return make_ours(shipped); }},
-      NamedTracker{"plain", [](const Shipped& shipped) { return make_plain(shipped); }},
-      NamedTracker{"CAM-Shift", [](const Shipped&) { return make_cam_shift(); }},
-      NamedTracker{"KCF", [](const Shipped&) { return make_kcf(); }},
-      NamedTracker{"CSRT", [](const Shipped&) { return make_csrt(); }},
+      NamedTracker{"ours", [](const config::Color& configuration) { return make_ours(configuration); }},
+      NamedTracker{"plain", [](const config::Color& configuration) { return make_plain(configuration); }},
+      NamedTracker{"CAM-Shift", [](const config::Color&) { return make_cam_shift(); }},
+      NamedTracker{"KCF", [](const config::Color&) { return make_kcf(); }},
+      NamedTracker{"CSRT", [](const config::Color&) { return make_csrt(); }},
   };
   return kTrackers;
 }

@@ -4,16 +4,16 @@
 #include <memory>
 #include <string_view>
 
+#include "src/config/color.h"
 #include "tools/lab/box_tracker.h"
 #include "tools/lab/film.h"
-#include "tools/lab/shipped.h"
 
 namespace cgsr::lab {
 
 /// Every tracker that the tables compare, by the name it has there and on the command line.
 struct NamedTracker {
   std::string_view name;
-  std::unique_ptr<BoxTracker> (*make)(const Shipped&);
+  std::unique_ptr<BoxTracker> (*make)(const config::Color&);
 };
 
 std::span<const NamedTracker> trackers();

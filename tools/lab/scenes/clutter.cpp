@@ -107,18 +107,18 @@ std::vector<int> stack_up(const std::vector<Leaf>& leaves, int width_px, int hei
 Rgb shared_color(const std::vector<Rgb>& palette, Random& random) {
   const Rgb& color = palette[static_cast<std::size_t>(random.below(static_cast<int>(palette.size())))];
   if (random.chance(0.5)) return color;
-  return of_hsv(hue_of(color) + random.uniform(-0.4, 0.4) * kSameHue, random.uniform(0.3, 0.95),
-                random.uniform(0.25, 0.95));
+  return to_rgb(
+      {hue_of(color) + random.uniform(-0.4, 0.4) * kSameHue, random.uniform(0.3, 0.95), random.uniform(0.25, 0.95)});
 }
 
 Rgb other_color(const std::vector<Rgb>& palette, Random& random) {
   if (random.chance(0.35))
-    return of_hsv(random.uniform(), random.uniform(0.0, 0.6 * kGreySaturation), random.uniform(0.1, 0.95));
+    return to_rgb({random.uniform(), random.uniform(0.0, 0.6 * kGreySaturation), random.uniform(0.1, 0.95)});
   for (;;) {
     const double hue = random.uniform();
     const bool is_other = std::ranges::all_of(
         palette, [&](const Rgb& color) { return hue_distance(hue, hue_of(color)) > kClearlyOtherHue; });
-    if (is_other) return of_hsv(hue, random.uniform(0.25, 0.95), random.uniform(0.15, 0.95));
+    if (is_other) return to_rgb({hue, random.uniform(0.25, 0.95), random.uniform(0.15, 0.95)});
   }
 }
 

@@ -17,11 +17,17 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// \param hue  in turns, any real number. \param saturation, value  in [0, 1].
-inline Rgb of_hsv(double hue, double saturation, double value) {
+/// The same colours by hue. A struct, so that random parts of it are drawn in the order in which they are written.
+struct Hsv {
+  double hue = 0.0;         ///< in turns, any real number
+  double saturation = 0.0;  ///< 0..1
+  double value = 0.0;       ///< 0..1
+};
+
+inline Rgb to_rgb(const Hsv& hsv) {
   const auto channel = [&](double sixths) {
-    const double k = std::fmod(sixths + (hue - std::floor(hue)) * 6.0, 6.0);
-    return value - value * saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0);
+    const double k = std::fmod(sixths + (hsv.hue - std::floor(hsv.hue)) * 6.0, 6.0);
+    return hsv.value - hsv.value * hsv.saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0);
   };
   return {channel(5.0), channel(3.0), channel(1.0)};
 }

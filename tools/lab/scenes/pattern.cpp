@@ -7,22 +7,23 @@ namespace {
 
 constexpr double kLeastHueGap = 50.0 / 360.0;
 
-bool is_new_hue(double hue, const std::vector<Rgb>& palette) {
-  for (const Rgb& color : palette) {
-    if (hue_distance(hue, hue_of(color)) < kLeastHueGap) return false;
+/// Colours around the circle of hues, kLeastHueGap or more between neighbours.
+std::vector<Rgb> random_palette(int colors, Random& random) {
+  const double first = random.uniform();
+  const double play = 1.0 / colors - kLeastHueGap;
+  std::vector<Rgb> palette;
+  for (int i = 0; i < colors; ++i) {
+    const double hue = first + static_cast<double>(i) / colors + random.uniform(0.0, play);
+    palette.push_back(to_rgb({hue, random.uniform(0.5, 0.95), random.uniform(0.45, 0.95)}));
   }
-  return true;
+  return palette;
 }
 
 }  // namespace
 
 Pattern::Pattern(Random random) {
   const int colors = 3 + random.below(3);
-  while (static_cast<int>(palette_.size()) < colors) {
-    const double hue = random.uniform();
-    if (is_new_hue(hue, palette_))
-      palette_.push_back(of_hsv(hue, random.uniform(0.5, 0.95), random.uniform(0.45, 0.95)));
-  }
+  palette_ = random_palette(colors, random);
   // One patch in each cell of a grid, the first ones in each colour once, so that every colour is seen.
   const int columns = 3 + random.below(2);
   const int rows = 3 + random.below(3);

@@ -45,7 +45,7 @@ double mean_error(const Light& a, const Light& b) {
 }
 
 /// Learns the world's object; nothing where learning refuses it.
-std::unique_ptr<BoxTracker> learned(const ObjectWorld& world, const Shipped& configuration) {
+std::unique_ptr<BoxTracker> learned(const ObjectWorld& world, const config::Color& configuration) {
   auto tracker = make_ours(configuration, Start::kAnywhere);
   if (!tracker->learn(world.learning_image(), world.learning_box())) return nullptr;
   return tracker;
@@ -73,7 +73,7 @@ void try_present(const Setting& setting, std::uint64_t trial, double low, double
   const double drawn_scale = random.uniform(1.0 / scale, scale);
   std::optional<Box> truth;
   const Image image = world.scene(0, light, true, drawn_scale, truth);
-  const auto tracker = learned(world, setting.shipped);
+  const auto tracker = learned(world, setting.configuration);
   book(tracker ? tracker->track(image) : Sighting{}, *truth, light, tally);
 }
 
@@ -127,8 +127,8 @@ void sweep_lower_bound(const Setting& setting, int trials, Report& report) {
   plot.curves = {{"false positives", {}}};
   for (int tenths = 6; tenths >= 2; --tenths) {
     Setting wider = setting;
-    wider.shipped.learn.lights.lowest = tenths / 10.0;
-    setting.progress(fmt::format("lower bound {:.1f}, object absent", wider.shipped.learn.lights.lowest));
+    wider.configuration.learn.lights.lowest = tenths / 10.0;
+    setting.progress(fmt::format("lower bound {:.1f}, object absent", wider.configuration.learn.lights.lowest));
     int false_positives = 0;
     for (int i = 0; i < trials; ++i) {
       const std::uint64_t trial = 200000 + static_cast<std::uint64_t>(i);
@@ -136,13 +136,13 @@ void sweep_lower_bound(const Setting& setting, int trials, Report& report) {
       Random random = Random(setting.seed).fork(trial);
       std::optional<Box> truth;
       const Image image = world.scene(0, random_light(kLow, kHigh, random), false, 1.0, truth);
-      const auto tracker = learned(world, wider.shipped);
+      const auto tracker = learned(world, wider.configuration);
       false_positives += tracker && tracker->track(image).box.has_value();
     }
-    const std::string row = fmt::format("lower bound {:.1f}, object absent", wider.shipped.learn.lights.lowest);
+    const std::string row = fmt::format("lower bound {:.1f}, object absent", wider.configuration.learn.lights.lowest);
     report.rows.push_back(share_row(row, "false positives", false_positives, trials));
     plot.curves[0].points.push_back(
-        {wider.shipped.learn.lights.lowest, *report.rows.back().ours, report.rows.back().interval});
+        {wider.configuration.learn.lights.lowest, *report.rows.back().ours, report.rows.back().interval});
   }
   std::ranges::reverse(plot.curves[0].points);
   report.plots.push_back(std::move(plot));

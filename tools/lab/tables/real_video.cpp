@@ -108,7 +108,7 @@ Result<Report> real_video(const Setting& setting) {
     for (const NamedTracker& named : trackers()) {
       const std::string row = fmt::format("{} / {}", film->name, named.name);
       setting.progress(row);
-      const auto tracker = named.make(setting.shipped);
+      const auto tracker = named.make(setting.configuration);
       auto boxes = follow(*tracker, *film, film->size(), *film);
       if (!boxes) return tl::unexpected(boxes.error());
       scores[named.name].push_back(score_images(*boxes, film->truth));

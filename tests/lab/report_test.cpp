@@ -1,0 +1,66 @@
+#include "tools/lab/report.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tools/lab/experiment.h"
+
+namespace cgsr::lab {
+namespace {
+
+Report sample() {
+  return {"name",
+          "title <with> markup",
+          "abc",
+          7,
+          {{"one", "IoU", "", std::nullopt, 0.5, Interval{0.4, 0.6}, 10},
+           {"two", "mean", "Minstr", 47.6, std::nullopt, std::nullopt, 3}},
+          {{"plot", "x", "y", {{"curve", {{0.0, 0.5, Interval{0.4, 0.6}}, {1.0, 0.7, std::nullopt}}}}}},
+          {"a note"}};
+}
+
+// The shape that machines read; a key that changes breaks them.
+TEST(ReportJson, HasTheAgreedKeysAndNullWhereThereIsNothing) {
+  const auto json = to_json({sample()});
+
+  EXPECT_EQ(json, nlohmann::json::parse(R"([{"name": "name", "config_sha256": "abc", "seed": 7, "rows": [
+    {"row": "one", "quantity": "IoU", "unit": "", "dissertation": null, "ours": 0.5, "interval": [0.4, 0.6], "trials": 10},
+    {"row": "two", "quantity": "mean", "unit": "Minstr", "dissertation": 47.6, "ours": null, "interval": null, "trials": 3}]}])"));
+}
+
+TEST(ReportText, PutsWhatWasMeasuredDownAndTheQuantitiesAcross) {
+  const std::string text = to_text(sample());
+
+  EXPECT_NE(text.find("0.500 0.400..0.600"), std::string::npos) << text;
+  EXPECT_NE(text.find("mean [Minstr]"), std::string::npos) << text;
+  EXPECT_NE(text.find("not there (dissertation 47.6)"), std::string::npos) << text;
+}
+
+TEST(ReportHtml, IsOnePageWithoutScriptAndWithMarkupEscaped) {
+  const std::string html = to_html({sample()});
+
+  EXPECT_NE(html.find("title &lt;with&gt; markup"), std::string::npos);
+  EXPECT_NE(html.find("<polyline"), std::string::npos);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
+TEST(MeanRow, SharesThatAreAllZeroStillHaveAnUpperBound) {
+  const Row row = mean_row("r", "precision", "", std::vector<double>(20, 0.0), 1);
+
+  ASSERT_TRUE(row.interval);
+  EXPECT_NEAR(row.interval->high, 0.161, 1e-3);
+}
+
+TEST(Setting, PrintsTheHashOfTheConfigurationThatItMeasures) {
+  Setting setting;
+  const std::string shipped = setting.config_sha256();
+  setting.configuration.learn.lights.lowest = 0.5;
+
+  EXPECT_EQ(shipped.size(), 64U);
+  EXPECT_NE(setting.config_sha256(), shipped);
+}
+
+}  // namespace
+}  // namespace cgsr::lab
