@@ -51,6 +51,7 @@ std::size_t Documentation::enter(std::string_view name, std::string_view meaning
 
 void Documentation::row(std::string_view name, std::string_view unit, std::string_view range, std::string_view value,
                         std::string_view meaning) {
+  if (unit == "1") unit = "";
   sections_[current_].rows +=
       fmt::format("| `{}` | {} | {} | {} | {} |\n", name, cell(unit), cell(range), cell(value), cell(meaning));
 }

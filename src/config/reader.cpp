@@ -95,6 +95,7 @@ struct Reader::State {
   template <class Number>
   void complain_of_range(std::string_view name, const toml::node& node, Number value, Range<Number> range,
                          std::string_view unit) {
+    if (unit == "1") unit = "";  // a count, which nobody says "1" after
     complain(line_of(node), fmt::format("{}{} = {} is not in {}..{}{}{}", level().prefix, name, value, range.minimum,
                                         range.maximum, unit.empty() ? "" : " ", unit));
   }

@@ -58,11 +58,13 @@ class Audit {
 
   // A key that has a dimension ends in its unit.
   void check_unit(std::string_view name, std::string_view unit) {
-    if (unit.empty()) return;
+    for (const std::string_view count : {"", "1", "frames", "nat"}) {
+      if (unit == count) return;  // no dimension
+    }
     struct Suffix {
       std::string_view unit, suffix;
     };
-    static constexpr std::array<Suffix, 14> kSuffixes{{{"m", "_m"},
+    static constexpr std::array<Suffix, 16> kSuffixes{{{"m", "_m"},
                                                        {"s", "_s"},
                                                        {"ms", "_ms"},
                                                        {"µs", "_us"},
@@ -75,7 +77,9 @@ class Audit {
                                                        {"m/s", "_mps"},
                                                        {"m/s²", "_mps2"},
                                                        {"rad/s", "_radps"},
-                                                       {"rad/s²", "_radps2"}}};
+                                                       {"rad/s²", "_radps2"},
+                                                       {"m/s^2", "_mps2"},
+                                                       {"rad/s^2", "_radps2"}}};
     for (const auto& [known, suffix] : kSuffixes) {
       if (known != unit) continue;
       if (!name.ends_with(suffix)) complain(name, "does not end in its unit " + std::string(suffix));

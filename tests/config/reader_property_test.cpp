@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "src/config/canonical.h"
@@ -101,7 +102,7 @@ void survive(const std::string& valid, int trials, std::uint64_t seed) {
     const auto parameters = document ? read<Parameters>(*document, Missing::kTakesDefault)
                                      : Result<Parameters>(tl::unexpected(document.error()));
     if (parameters) {
-      ASSERT_TRUE(audit(*parameters).empty()) << trial << '\n' << text;
+      ASSERT_THAT(audit(*parameters), testing::IsEmpty()) << trial << '\n' << text;
     } else {
       ++refused;
       ASSERT_TRUE(is_clear(parameters.error().message)) << trial << '\n' << parameters.error().message;
@@ -160,8 +161,7 @@ void come_back(int trials, std::uint64_t seed) {
   Random random(seed);
   for (int trial = 0; trial < trials; ++trial) {
     Parameters drawn;
-    Draw draw(random);
-    Parameters::describe(drawn, draw);
+    Draw(random).section("", drawn, "");
 
     const std::string text = canonical(drawn);
     const auto document = Document::parse(text, "robot.toml");
