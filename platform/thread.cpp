@@ -27,8 +27,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 15;  // the kernel's TASK_COMM_LEN, without the final zero
 constexpr int kHighestPriority = 89;
-constexpr std::size_t kStackInUse =
-    16 * 1024;  // what a thread has used by the time it can touch the rest: TLS, start-up frames
+constexpr std::size_t kStackMargin = 16 * 1024;  // left untouched at the far end, for the call that touches
 
 /// A thread attribute that is destroyed with its scope.
 class Attributes {
@@ -67,11 +66,25 @@ Result<void> check(const ThreadSpec& spec) {
     return fail(fmt::format("thread '{}': priority {} is not in {}", spec.name, spec.priority,
                             fifo ? fmt::format("1..{} of SCHED_FIFO", kHighestPriority) : "0..0 of SCHED_OTHER"));
   }
-  const auto least = static_cast<std::size_t>(PTHREAD_STACK_MIN) + 2 * kStackInUse;
+  const auto least = static_cast<std::size_t>(PTHREAD_STACK_MIN) + 2 * kStackMargin;
   if (spec.stack_bytes < least) {
     return fail(fmt::format("thread '{}': a stack of {} bytes is less than {}", spec.name, spec.stack_bytes, least));
   }
   return {};
+}
+
+/// \return the bytes of the calling thread's stack below this frame. Above it lie start-up frames and thread-local
+///       variables, whose size the libraries decide.
+std::size_t stack_left() {
+  pthread_attr_t attributes;
+  pthread_getattr_np(pthread_self(), &attributes);
+  void* lowest = nullptr;
+  std::size_t bytes = 0;
+  pthread_attr_getstack(&attributes, &lowest, &bytes);
+  pthread_attr_destroy(&attributes);
+  const auto* const here = static_cast<const char*>(__builtin_frame_address(0));
+  const auto left = here - static_cast<const char*>(lowest);
+  return std::max(static_cast<std::size_t>(left), 2 * kStackMargin);
 }
 
 std::string_view name_of(SchedulingPolicy policy) {
@@ -83,7 +96,7 @@ std::string_view name_of(SchedulingPolicy policy) {
 void* ThreadTable::Entry::run(void* self) {
   auto& entry = *static_cast<Entry*>(self);
   const auto& spec = entry.report.asked;
-  prefault_stack(spec.stack_bytes - PTHREAD_STACK_MIN - kStackInUse);
+  prefault_stack(stack_left() - kStackMargin);
   if (spec.heap_bytes > 0) prefault_heap(spec.heap_bytes);
   entry.body();
   return nullptr;

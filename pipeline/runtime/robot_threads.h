@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "platform/thread.h"
@@ -15,5 +16,7 @@ inline constexpr ThreadSpec kCaptureThread{"capture", SchedulingPolicy::kFifo, 6
 inline constexpr ThreadSpec kVisionThread{"vision", SchedulingPolicy::kFifo, 40, 2 * kMiB, 16 * kMiB};
 inline constexpr ThreadSpec kSwitchThread{"switches", SchedulingPolicy::kOther, 0, 256 * kKiB, 0};
 inline constexpr ThreadSpec kHousekeepingThread{"housekeeping", SchedulingPolicy::kOther, 0, 1 * kMiB, 0};
+inline constexpr std::array kRobotThreads{kMotionThread, kCaptureThread, kVisionThread, kSwitchThread,
+                                          kHousekeepingThread};
 
 }  // namespace cgsr::runtime

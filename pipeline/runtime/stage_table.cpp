@@ -77,7 +77,7 @@ std::string to_text(const StageTable& table) {
                    row.skips, row.overruns, row.faults, row.budget_us, row.mean_us, row.p99_us, row.worst_us);
   }
   const auto frames = table.frames();
-  fmt::format_to(out, "{:<16} {:>8} {:>43.0f} {:>9.0f} {:>9.0f}\n", "whole frame", frames.frames, frames.mean_us,
+  fmt::format_to(out, "{:<16} {:>8} {:>44.0f} {:>9.0f} {:>9.0f}\n", "whole frame", frames.frames, frames.mean_us,
                  frames.p99_us, frames.worst_us);
   fmt::format_to(out, "{} frames took longer than the time between two images, {} ran without an image\n", frames.late,
                  frames.without_image);
