@@ -46,8 +46,8 @@ struct CanCounters {
   std::uint64_t restarts = 0;       ///< times bus-off was left.
 };
 
-/// A classic CAN bus, as one node of it sees it. Frames with 29-bit ids, remote frames and error frames never come out of it, nor
-/// do the node's own.
+/// A classic CAN bus, as one node of it sees it. Frames with 29-bit ids, remote frames and error frames never come out
+/// of it, nor do the node's own.
 ///
 /// Threads: start and stop from the service thread, the rest from one thread only (the drive's). Nothing here blocks or
 /// allocates but start and stop.
@@ -55,7 +55,8 @@ class CanBus {
  public:
   virtual ~CanBus() = default;
 
-  /// Joins the bus. \return what is wrong with the interface. Starting twice is an error; after stop() it may start again.
+  /// Joins the bus. \return what is wrong with the interface. Starting twice is an error; after stop() it may start
+  /// again.
   virtual Result<void> start() = 0;
 
   /// Puts a frame into the send queue, which is short on purpose: old motion commands must not wait in it.

@@ -11,7 +11,8 @@ namespace cgsr::hal::rmp {
 
 // Frames <-> messages, and nothing else: no units, no state, no time.
 //
-// A payload is four 16-bit slots, each big-endian: slot n lies in bytes 2n, 2n + 1. A 32-bit value takes two slots, the low one first.
+// A payload is four 16-bit slots, each big-endian: slot n lies in bytes 2n, 2n + 1. A 32-bit value takes two slots, the
+// low one first.
 
 enum class DecodeFailure : std::uint8_t {
   kUnknownId,  ///< of another family, or of a later one (0x0500..: RMP 210/220/440).

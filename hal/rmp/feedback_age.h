@@ -11,8 +11,8 @@ namespace cgsr::hal::rmp {
 
 /// How old what the drive needs of the base is, message by message, and for how long it has come whole.
 ///
-/// The base sends a set of messages every 10 ms, in no order to rely on: a set is whole once every needed message has come since
-/// the last whole one.
+/// The base sends a set of messages every 10 ms, in no order to rely on: a set is whole once every needed message has
+/// come since the last whole one.
 class FeedbackAge {
  public:
   /// Odometry, attitude, mode and status words: without any of these the robot must not be driven.

@@ -39,7 +39,8 @@ struct FeedbackCounters {
   std::uint64_t foreign_commands = 0;
 };
 
-/// Everything that is known about the base from its frames. A message with values that no base has counts as one that did not come.
+/// Everything that is known about the base from its frames. A message with values that no base has counts as one that
+/// did not come.
 class Listener {
  public:
   explicit Listener(const RmpParameters& parameters);
@@ -52,6 +53,9 @@ class Listener {
   /// \return whether every needed message has come at least once.
   [[nodiscard]] bool complete() const { return age_.complete(); }
 
+  /// As FeedbackAge::oldest.
+  [[nodiscard]] std::optional<FeedbackAge::Oldest> oldest(MonoTime now) const { return age_.oldest(now); }
+
   /// \return whether a needed message is too old at `now`; false until all have come. Counts what it sees.
   bool stale(MonoTime now);
 
@@ -63,7 +67,6 @@ class Listener {
   [[nodiscard]] const FeedbackCounters& counters() const { return counters_; }
   [[nodiscard]] const std::optional<MonoTime>& foreign_command_at() const { return foreign_command_at_; }
   [[nodiscard]] const std::optional<MonoTime>& powered_off_at() const { return powered_off_at_; }
-  [[nodiscard]] const FeedbackAge& age() const { return age_; }
 
  private:
   void take_motion(const Motion& motion, MonoTime stamp);

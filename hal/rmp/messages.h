@@ -5,8 +5,9 @@
 
 namespace cgsr::hal::rmp {
 
-// What the Segway RMP 50/100/200/400 says on its CAN bus, in counts as they travel; scales.h gives them units. Positive velocities go
-// forward, positive turns and integrated yaw go left; the sign of the yaw *rate* is another matter (RmpScales::yaw_rate_sign).
+// What the Segway RMP 50/100/200/400 says on its CAN bus, in counts as they travel; scales.h gives them units. Positive
+// velocities go forward, positive turns and integrated yaw go left; the sign of the yaw *rate* is another matter
+// (RmpScales::yaw_rate_sign).
 
 enum class MessageId : std::uint16_t {
   kBuild = 0x400,
@@ -123,11 +124,13 @@ inline constexpr std::uint16_t kLowBattery = 0x4000;
 namespace word2 {
 inline constexpr std::uint16_t kEmergencyStop = 0x0202;
 inline constexpr std::uint16_t kEmptyBattery = 0x1010;
-/// Pitch, position error, battery temperature, roll. Not among them: over-speed and low bus voltage, which are warnings.
+/// Pitch, position error, battery temperature, roll. Not among them: over-speed and low bus voltage, which are
+/// warnings.
 inline constexpr std::uint16_t kFault = 0x6565;
 }  // namespace word2
 
-/// 0x0412. The user interface sends it again and again while the power base is off; a host that sends it takes the power away.
+/// 0x0412. The user interface sends it again and again while the power base is off; a host that sends it takes the
+/// power away.
 struct Shutdown {
   friend bool operator==(const Shutdown&, const Shutdown&) = default;
 };

@@ -8,15 +8,16 @@
 
 namespace cgsr::hal::rmp {
 
-/// Where the wheels say that the robot is: x, y and heading since the first set, out of integrated displacements that start
-/// anywhere, wrap at 2^32, and now and then lie.
+/// Where the wheels say that the robot is: x, y and heading since the first set, out of integrated displacements that
+/// start anywhere, wrap at 2^32, and now and then lie.
 ///
 ///   ds = counts / displacement_per_m,  dpsi = counts 2 pi / yaw_per_rev     differences modulo 2^32, signed
 ///   x += ds cos(psi + dpsi / 2),  y += ds sin(psi + dpsi / 2),  psi += dpsi
 ///
-/// A difference that no base could have travelled in the time that the servo frame counter says has passed is a jump. It waits for
-/// the next set: if that one continues from before the jump, the jump was a damaged value and nothing is lost; if it continues from
-/// after it, the base started counting anew and so does the baseline, the pose staying where it was.
+/// A difference that no base could have travelled in the time that the servo frame counter says has passed is a jump.
+/// It waits for the next set: if that one continues from before the jump, the jump was a damaged value and nothing is
+/// lost; if it continues from after it, the base started counting anew and so does the baseline, the pose staying where
+/// it was.
 class Odometer {
  public:
   struct Pose {

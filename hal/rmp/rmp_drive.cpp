@@ -117,7 +117,9 @@ void RmpDrive::judge(MonoTime now) {
   listener_.break_series();
   const bool asleep = standing_ == DriveFault::kPoweredOff || standing_ == DriveFault::kFeedbackLost ||
                       standing_ == DriveFault::kMotorsOff;
-  if (latched_ == DriveFault::kNone && (was_ready_ || !asleep)) latched_ = standing_;
+  // The first fault stays, but lost feedback gives way to what explains it.
+  const bool says_more = latched_ == DriveFault::kNone || latched_ == DriveFault::kFeedbackLost;
+  if (says_more && (was_ready_ || !asleep)) latched_ = standing_;
 }
 
 DriveFault RmpDrive::standing_fault(MonoTime now) {

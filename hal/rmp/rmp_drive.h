@@ -22,12 +22,12 @@ struct RmpCounters {
 
 /// A Segway RMP 50/100/200/400 over any CAN bus.
 ///
-/// Sends the newest command at most every 10 ms; a newer one waits for its turn. Repeats it while command() is silent for up to
-/// hold_s, then zero: the base itself would go on for 400 ms. Listens whenever command() or odometry() is called, so one of them
-/// must be, every 30 ms or so.
+/// Sends the newest command at most every 10 ms; a newer one waits for its turn. Repeats it while command() is silent
+/// for up to hold_s, then zero: the base itself would go on for 400 ms. Listens whenever command() or odometry() is
+/// called, so one of them must be, every 30 ms or so.
 ///
-/// Zero goes out, whatever is commanded, as long as fault() is not kNone. Every fault latches (FaultLatch) except, before the base
-/// was ready for the first time, that it is off, silent or without motors: those are waited for.
+/// Zero goes out, whatever is commanded, as long as fault() is not kNone. Every fault latches (FaultLatch) except,
+/// before the base was ready for the first time, that it is off, silent or without motors: those are waited for.
 ///
 /// Threads: as Drive; counters, report, fault and rearm from the motion thread.
 class RmpDrive final : public Drive, public FaultLatch {
@@ -40,8 +40,10 @@ class RmpDrive final : public Drive, public FaultLatch {
 
   Result<void> start() override;
 
-  /// Velocities beyond what the base takes are bounded. While something is wrong zero fails too, but is sent all the same.
-  /// \return kSendFailed: bus off, link lost, or this one frame was refused. kNoFeedback: feedback never came whole or is too old.
+  /// Velocities beyond what the base takes are bounded. While something is wrong zero fails too, but is sent all the
+  /// same.
+  /// \return kSendFailed: bus off, link lost, or this one frame was refused. kNoFeedback: feedback never came whole or
+  /// is too old.
   ///         kNotReady: any other fault, or a velocity other than zero while a fault waits for rearm().
   tl::expected<void, DriveFailure> command(const Twist& twist, MonoTime now) override;
 
@@ -55,6 +57,8 @@ class RmpDrive final : public Drive, public FaultLatch {
 
   [[nodiscard]] const RmpReport& report() const { return listener_.report(); }
   [[nodiscard]] RmpCounters counters() const;
+  /// \return which needed message is awaited longest, and since when; nothing before all have come once.
+  [[nodiscard]] std::optional<FeedbackAge::Oldest> oldest_feedback(MonoTime now) const { return listener_.oldest(now); }
 
  private:
   /// What was said last, and what there is to say.

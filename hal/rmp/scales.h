@@ -14,7 +14,8 @@ enum class Sign : std::uint8_t { kAsReported, kNegated };
 inline constexpr std::array kSignNames = {Named<Sign>{"as_reported", Sign::kAsReported},
                                           Named<Sign>{"negated", Sign::kNegated}};
 
-/// Counts per unit. The defaults are the RMP 200's and 400's; README.md has the RMP 50's and what is disputed about which (D1, D2, D4).
+/// Counts per unit. The defaults are the RMP 200's and 400's; README.md has the RMP 50's and what is disputed about
+/// which (D1, D2, D4).
 struct RmpScales {
   double velocity_command_per_mps = 332.0;  // D1
   double turn_command_per_degps = 7.8;      // D2
@@ -52,8 +53,9 @@ struct RmpScales {
   }
 };
 
-/// \return the pure motion command for a finite `twist`, rounded to the nearest count and bounded to what the base takes.
-/// Not done: above about 1.57 m/s the base takes the turn for a lateral acceleration (D3) and turns less than it was told.
+/// \return the pure motion command for a finite `twist`, rounded to the nearest count and bounded to what the base
+/// takes. Not done: above about 1.57 m/s the base takes the turn for a lateral acceleration (D3) and turns less than it
+/// was told.
 Command to_command(const Twist& twist, const RmpScales& scales);
 
 /// Forward is the mean of the wheels.

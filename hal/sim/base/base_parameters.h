@@ -14,7 +14,8 @@ inline constexpr std::array kBaseModeNames = {Named<BaseMode>{"disabled", BaseMo
                                               Named<BaseMode>{"tractor", BaseMode::kTractor},
                                               Named<BaseMode>{"balance", BaseMode::kBalance}};
 
-/// How the simulated Segway moves. Invented where no figure is known: the bus protocol fixes what it says, not how it drives.
+/// How the simulated Segway moves. Invented where no figure is known: the bus protocol fixes what it says, not how it
+/// drives.
 struct BaseParameters {
   BaseMode mode = BaseMode::kBalance;
   double acceleration_limit_mps2 = 1.5;

@@ -7,8 +7,8 @@
 
 namespace cgsr::sim {
 
-/// A unit vector that turns without sine and cosine: libc picks its versions of them by the CPU it finds, and then the last bits,
-/// and in the end the bytes of a run, differ from machine to machine.
+/// A unit vector that turns without sine and cosine: libc picks its versions of them by the CPU it finds, and then the
+/// last bits, and in the end the bytes of a run, differ from machine to machine.
 struct Direction {
   double x = 1.0;
   double y = 0.0;
@@ -36,16 +36,18 @@ struct BodyTarget {
 
 /// Wheels, body and ground of a two-wheeled robot that balances.
 ///
-/// The body is an inverted pendulum of length l on wheels with velocity v: to accelerate it has to lean, and to lean it first rolls
-/// back a little.
+/// The body is an inverted pendulum of length l on wheels with velocity v: to accelerate it has to lean, and to lean it
+/// first rolls back a little.
 ///
 ///   l theta'' = g theta - v'                      the pendulum, small angles
-///   theta'' = w^2 (s'/g - theta) - 2 d w theta'   what balancing makes of it; s: the wanted speed, bounded in slope and lagging
+///   theta'' = w^2 (s'/g - theta) - 2 d w theta'   what balancing makes of it
+///                                                 s: the wanted speed, bounded in slope and lagging
 ///
-/// The second is integrated once (V' = theta, V'' = w^2 (s/g - V) - 2 d w V'), which gives v = g V - l theta' without drift. Constant
-/// acceleration a leans it by a/g: 2.3 degrees for 0.4 m/s^2.
+/// The second is integrated once (V' = theta, V'' = w^2 (s/g - V) - 2 d w V'), which gives v = g V - l theta' without
+/// drift. Constant acceleration a leans it by a/g: 2.3 degrees for 0.4 m/s^2.
 ///
-/// Over the ground go the wheels less their slip, a slow random process for each (Ornstein-Uhlenbeck), and turns less scrub.
+/// Over the ground go the wheels less their slip, a slow random process for each (Ornstein-Uhlenbeck), and turns less
+/// scrub.
 class SegwayBody {
  public:
   SegwayBody(const BaseParameters& parameters, double x_m, double y_m, double heading_rad, std::uint64_t seed);

@@ -65,8 +65,8 @@ BaseState SimulatedRmp::state_at(MonoTime time) {
   const auto last = static_cast<double>(remembered_ - 1);
   const double first = std::max(0.0, last - static_cast<double>(kHistory - 1));
   const double at = std::clamp(since_begin, first, last + 1.0);
-  // Between two of the grid; past the last one onwards from the two before it: nothing happens between servo frames that was not
-  // decided at the last one.
+  // Between two of the grid; past the last one onwards from the two before it: nothing happens between servo frames
+  // that was not decided at the last one.
   const auto k = static_cast<std::uint64_t>(std::clamp(std::floor(at), first, std::max(first, last - 1.0)));
   const BaseState& a = history_[k % kHistory];
   const BaseState& b = history_[std::min(k + 1, remembered_ - 1) % kHistory];

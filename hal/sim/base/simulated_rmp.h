@@ -33,8 +33,9 @@ struct BaseEvent {
   std::uint16_t word2 = 0;
 };
 
-/// Where the robot really is. X_WR: the point between the wheels on the floor, heading about z. The body, and all that it carries,
-/// is pitched about the axle (BaseParameters::axle_height_m above that point), positive leaning forward; it does not roll.
+/// Where the robot really is. X_WR: the point between the wheels on the floor, heading about z. The body, and all that
+/// it carries, is pitched about the axle (BaseParameters::axle_height_m above that point), positive leaning forward; it
+/// does not roll.
 struct BaseState {
   MonoTime stamp{};
   double x_m = 0.0;
@@ -54,13 +55,14 @@ struct BasePlacement {
   std::uint64_t seed = 1;
 };
 
-/// A Segway RMP 200 as it is seen from its CAN bus: takes commands, moves, and every 10 ms sends its set of status messages in the
-/// order of a real bus. Without a command for 0.4 s it slews to zero.
+/// A Segway RMP 200 as it is seen from its CAN bus: takes commands, moves, and every 10 ms sends its set of status
+/// messages in the order of a real bus. Without a command for 0.4 s it slews to zero.
 ///
-/// It lives on a grid of milliseconds from BasePlacement::time on, its servo loop on every tenth; at a servo frame it takes the
-/// commands that arrived by then. So it does not matter how often it is asked to catch up, only what was sent when.
-/// Obeyed: motion, the scales of velocity, acceleration and turn, gain schedule (only reported), balance lockout, operational mode,
-/// integrator reset, shutdown. Not modelled: falling over, the current limit, terrain, batteries that drain.
+/// It lives on a grid of milliseconds from BasePlacement::time on, its servo loop on every tenth; at a servo frame it
+/// takes the commands that arrived by then. So it does not matter how often it is asked to catch up, only what was sent
+/// when. Obeyed: motion, the scales of velocity, acceleration and turn, gain schedule (only reported), balance lockout,
+/// operational mode, integrator reset, shutdown. Not modelled: falling over, the current limit, terrain, batteries that
+/// drain.
 ///
 /// Threads: every member from any thread; takes a lock, for simulation only. Catching up does not allocate.
 class SimulatedRmp {
@@ -72,8 +74,8 @@ class SimulatedRmp {
   /// Lives until `time`; an earlier time changes nothing.
   void advance_to(MonoTime time);
 
-  /// \return the truth at `time`, catching up when that is later than ever before. Up to a second ago it is remembered exactly
-  /// (linear within the millisecond); before that the oldest that is.
+  /// \return the truth at `time`, catching up when that is later than ever before. Up to a second ago it is remembered
+  /// exactly (linear within the millisecond); before that the oldest that is.
   BaseState state_at(MonoTime time);
 
   [[nodiscard]] double axle_height_m() const { return parameters_.axle_height_m; }

@@ -105,7 +105,8 @@ bool VirtualCanBus::reaches(Node to, Node from, const CanFrame& frame) const {
   if (over_the_cable && troubled(BusTrouble::kUnplugged, at)) return false;
   if (to != kHost) return true;
   if (troubled(BusTrouble::kBusOff, at) || troubled(BusTrouble::kGone, at)) return false;
-  if (from == kBase && troubled(BusTrouble::kBaseSilent, at)) return false;
+  if (from != kBase) return true;
+  if (troubled(BusTrouble::kBaseSilent, at)) return false;
   return std::none_of(script_.begin(), script_.end(), [&](const BusEvent& event) {
     return event.trouble == BusTrouble::kIdLost && event.from <= at && at < event.to && event.frame.id == frame.id;
   });

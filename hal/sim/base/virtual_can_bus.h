@@ -13,12 +13,12 @@
 namespace cgsr::sim {
 
 enum class BusTrouble : std::uint8_t {
-  kBaseSilent,  ///< what the base sends gets lost; it hears everything.
-  kIdLost,      ///< frames of one id get lost on the way to the host.
-  kUnplugged,  ///< the host's cable is out: its queue fills, its controller goes error passive, neither hears the other.
-               ///< What waits in the queue goes out when the cable is back.
-  kBusOff,     ///< the host's controller is off the bus.
-  kGone,       ///< the host's interface is gone.
+  kBaseSilent,       ///< what the base sends gets lost; it hears everything.
+  kIdLost,           ///< what the base sends under one id gets lost.
+  kUnplugged,        ///< the host's cable is out: its queue fills, its controller goes error passive, neither hears the
+                     ///< other. What waits in the queue goes out when the cable is back.
+  kBusOff,           ///< the host's controller is off the bus.
+  kGone,             ///< the host's interface is gone.
   kSecondCommander,  ///< somebody else sends `frame` every 20 ms.
 };
 
@@ -30,14 +30,15 @@ struct BusEvent {
   hal::CanFrame frame{};  ///< kIdLost: its id. kSecondCommander: all but the stamp.
 };
 
-/// A CAN bus of 500 kbit/s with two nodes, the host (the robot's computer) and the base, and room for a third that is only heard.
+/// A CAN bus of 500 kbit/s with two nodes, the host (the robot's computer) and the base, and room for a third that is
+/// only heard.
 ///
-/// There is no time in it but the stamps: a frame arrives when it has travelled over the wire, which carries one at a time in the
-/// order they were sent; receive(until) hands out what has arrived by then. Same calls, same frames, same stamps.
-/// Not modelled: arbitration between frames that wait at the same time, stuff bits, single errors.
+/// There is no time in it but the stamps: a frame arrives when it has travelled over the wire, which carries one at a
+/// time in the order they were sent; receive(until) hands out what has arrived by then. Same calls, same frames, same
+/// stamps. Not modelled: arbitration between frames that wait at the same time, stuff bits, single errors.
 ///
-/// Threads: the two ports may live in different threads. It takes a lock and is for simulation only; send and receive do not
-/// allocate. The bus must outlive its ports.
+/// Threads: the two ports may live in different threads. It takes a lock and is for simulation only; send and receive
+/// do not allocate. The bus must outlive its ports.
 class VirtualCanBus {
  public:
   explicit VirtualCanBus(std::vector<BusEvent> script = {});
@@ -51,10 +52,12 @@ class VirtualCanBus {
   /// A third node sends `frame` at its stamp: both others hear it.
   void inject(const hal::CanFrame& frame);
 
-  /// Called with `until` before the host receives, so that the base can catch up with the time. Set before anything moves.
+  /// Called with `until` before the host receives, so that the base can catch up with the time. Set before anything
+  /// moves.
   void before_host_receives(std::function<void(MonoTime)> catch_up) { catch_up_ = std::move(catch_up); }
 
-  /// Called with every frame that travels over the wire, whoever hears it, stamped with its arrival. Set before anything moves.
+  /// Called with every frame that travels over the wire, whoever hears it, stamped with its arrival. Set before
+  /// anything moves.
   void tap(std::function<void(const hal::CanFrame&)> listener) { tap_ = std::move(listener); }
 
  private:

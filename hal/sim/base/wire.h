@@ -7,8 +7,8 @@
 
 namespace cgsr::sim {
 
-// The base's side of the Segway RMP protocol. It is written from the protocol's description alone and shares nothing with the
-// driver's codec (hal/rmp): where one of them is wrong, the two do not understand each other.
+// The base's side of the Segway RMP protocol. It is written from the protocol's description alone and shares nothing
+// with the driver's codec (hal/rmp): where one of them is wrong, the two do not understand each other.
 
 /// What the simulated base believes about its counts; an RMP 200.
 struct WireScales {
@@ -39,8 +39,8 @@ std::optional<Order> read_order(const hal::CanFrame& frame);
 /// 0x0412.
 bool is_shutdown(const hal::CanFrame& frame);
 
-// Frames of the base; their stamps are for the sender to set. Angles in rad, positive: leaning forward, to the right, turning left.
-// Arguments without a unit are counts or bits as they go onto the wire.
+// Frames of the base; their stamps are for the sender to set. Angles in rad, positive: leaning forward, to the right,
+// turning left. Arguments without a unit are counts or bits as they go onto the wire.
 hal::CanFrame build_frame(std::uint16_t build, std::uint16_t ticker);  // 0x0400
 hal::CanFrame attitude_frame(const WireScales& scales, double pitch_rad, double pitch_rate_radps, double roll_rad,
                              double roll_rate_radps);  // 0x0401

@@ -37,8 +37,8 @@ class SimulatedSwitches final : public hal::Switches {
  public:
   explicit SimulatedSwitches(std::vector<SwitchLine> lines, std::vector<SwitchEvent> script = {});
 
-  /// \return an error that names the line when a name is empty or there twice, or the script names one that does not exist or of
-  /// which that cannot happen.
+  /// \return an error that names the line when a name is empty or there twice, or the script names one that does not
+  /// exist or of which that cannot happen.
   Result<void> start() override;
   [[nodiscard]] std::vector<std::string> names() const override;
   Result<void> set(std::string_view name, bool on) override;
