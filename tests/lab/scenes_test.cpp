@@ -159,6 +159,14 @@ TEST(ObjectWorldProperty, LightScalesTheLearnedColorsChannelByChannel) {
   }
 }
 
+TEST(AbsoluteLight, IsRelativeToWhatLearningAssumed) {
+  const Light light = absolute_light({0.6, 0.9, 1.0}, {0.8, 0.9, 1.0});
+
+  EXPECT_DOUBLE_EQ(light.r, 0.6);
+  EXPECT_DOUBLE_EQ(light.g, 0.8);
+  EXPECT_DOUBLE_EQ(light.b, 0.8);
+}
+
 TEST(AssumedLight, IsTheBrightestChannelAndAtLeastTheLearningLight) {
   std::vector<std::uint8_t> bytes(2 * 16 * 16);
   for (std::size_t i = 0; i < bytes.size(); i += 2) {

@@ -36,12 +36,15 @@ Cost cost_of(const nlohmann::json& figures) {
 
 }  // namespace
 
-Result<Counted> count_self(const std::vector<std::string>& arguments) {
+Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
+                             const std::vector<std::string>& film) {
   const std::filesystem::path scratch =
       std::filesystem::temp_directory_path() / fmt::format("cgsr-lab-{}.json", getpid());
-  std::vector<std::string> words{CGSR_COUNT_TOOL, "--json", scratch.string(), "--",
-                                 std::filesystem::read_symlink("/proc/self/exe").string()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> words{
+      CGSR_COUNT_TOOL, "--json",    scratch.string(),    "--", std::filesystem::read_symlink("/proc/self/exe").string(),
+      "follow",        "--tracker", std::string(tracker)};
+  if (!config_file.empty()) words.insert(words.end(), {"--config", config_file});
+  words.insert(words.end(), film.begin(), film.end());
   const int code = run_quietly(words);
   const auto result = nlohmann::json::parse(std::ifstream(scratch), nullptr, false);
   std::error_code ignored;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "platform/error.h"
@@ -20,7 +21,11 @@ struct Counted {
   int images = 0;
 };
 
-/// Runs this very program once more under tools/count. \param arguments  of the command line. \return what went wrong, in words.
-Result<Counted> count_self(const std::vector<std::string>& arguments);
+/// Runs this very program's command `follow` once more under tools/count.
+///
+/// \param tracker  its name. \param config_file  the configuration; empty: what ships. \param film  the options that name the film.
+/// \return what went wrong, in words.
+Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
+                             const std::vector<std::string>& film);
 
 }  // namespace cgsr::lab

@@ -21,6 +21,7 @@ struct Setting {
   std::optional<std::filesystem::path> data;  ///< the folder of real images, where there is one
   bool count = true;                          ///< measure instructions as well, which is slow
   config::Color configuration;
+  std::string config_file;  ///< where it came from; empty: it is what ships
   std::function<void(const std::string&)> progress = [](const std::string&) {};
 
   [[nodiscard]] std::string config_sha256() const;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "src/config/load.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/trackers.h"
 
@@ -32,7 +33,7 @@ struct ReproduceOptions {
   std::vector<std::string> names;
   std::uint64_t seed = 1;
   int trials = 0;
-  std::string data, json, html;
+  std::string data, json, html, config;
   bool list = false;
   bool no_count = false;
 };
@@ -58,8 +59,12 @@ int list_experiments() {
   return 0;
 }
 
-Setting setting_of(const ReproduceOptions& options) {
+Result<Setting> setting_of(const ReproduceOptions& options) {
+  const auto configuration = config::load_color(options.config);
+  if (!configuration) return tl::unexpected(configuration.error());
   Setting setting;
+  setting.configuration = *configuration;
+  setting.config_file = options.config;
   setting.seed = options.seed;
   setting.count = !options.no_count;
   if (options.trials > 0) setting.trials = options.trials;
@@ -74,11 +79,12 @@ int reproduce(const ReproduceOptions& options) {
   if (options.list) return list_experiments();
   const auto wanted = chosen(options.names);
   if (!wanted) return complain(wanted.error());
-  const Setting setting = setting_of(options);
+  const auto setting = setting_of(options);
+  if (!setting) return complain(setting.error());
   std::vector<Report> reports;
   for (const Experiment* experiment : *wanted) {
-    auto report = experiment->run(setting);
-    setting.progress("");
+    auto report = experiment->run(*setting);
+    setting->progress("");
     if (!report) return complain(report.error());
     fmt::print("{}\n", to_text(*report));
     reports.push_back(std::move(*report));
@@ -93,7 +99,7 @@ int reproduce(const ReproduceOptions& options) {
 constexpr int kGeneratedImages = 150;
 
 struct FilmOptions {
-  std::string tracker = "ours", input, learn_from, csv, output;
+  std::string config, tracker = "ours", input, learn_from, csv, output;
   std::string size;
   std::uint64_t scene = 0;
   int images = 0;  // all; of a generated film kGeneratedImages
@@ -113,9 +119,11 @@ int follow_film(const FilmOptions& options) {
   if (!film) return complain(film.error());
   const auto learn_from = options.learn_from.empty() ? film : film_of(options, options.learn_from);
   if (!learn_from) return complain(learn_from.error());
+  const auto configuration = config::load_color(options.config);
+  if (!configuration) return complain(configuration.error());
   const auto named = std::ranges::find(trackers(), options.tracker, &NamedTracker::name);
   const auto boxes =
-      follow(*named->make(config::Color{}), *film, options.images > 0 ? options.images : film->size(), *learn_from);
+      follow(*named->make(*configuration), *film, options.images > 0 ? options.images : film->size(), *learn_from);
   if (!boxes) return complain(boxes.error());
   Boxes truth = film->truth;
   truth.resize(boxes->size());
@@ -144,6 +152,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_flag("--list", options.list, "name what there is");
   app.add_option("--seed", options.seed, "of everything that is drawn at random")->capture_default_str();
   app.add_option("--trials", options.trials, "instead of each table's own number")->check(CLI::PositiveNumber);
+  app.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   app.add_option("--data", options.data, "folder of recorded sequences")->envname("CGSR_DATA");
   app.add_flag("--no-count", options.no_count, "leave out the instructions, which are slow to count");
   app.add_option("--json", options.json, "write the rows for machines");
@@ -151,6 +160,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
 }
 
 void add_film_options(CLI::App& command, FilmOptions& options) {
+  command.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   command.add_option("--scene", options.scene, "seed of a generated film");
   command.add_option("--images", options.images, "how many, the one learned from included")->check(CLI::PositiveNumber);
   command.add_flag("--absent", options.absent, "generated film: the object is in the first image alone");

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -37,11 +39,16 @@ std::vector<double> values_of(const std::vector<ImageScore>& scores, const Figur
   return values;
 }
 
+/// Figures that are all the same teach a bootstrap nothing: no interval then.
+std::optional<Interval> unless_degenerate(const Interval& interval) {
+  return interval.low < interval.high ? std::optional(interval) : std::nullopt;
+}
+
 void add_film_rows(const std::string& row, const std::vector<ImageScore>& scores, std::uint64_t seed, Report& report) {
   for (const Figure& figure : kFigures) {
     const auto values = values_of(scores, figure);
     report.rows.push_back({row, std::string(figure.name), "", std::nullopt, mean(values),
-                           bootstrap_mean(values, kBlock, seed), static_cast<int>(values.size())});
+                           unless_degenerate(bootstrap_mean(values, kBlock, seed)), static_cast<int>(values.size())});
   }
 }
 
@@ -58,7 +65,7 @@ void add_mean_rows(const std::string& row, const Scores& films, std::uint64_t se
     }
     const std::vector<std::span<const double>> groups(values.begin(), values.end());
     report.rows.push_back({row, std::string(figure.name), "", std::nullopt, mean(means),
-                           bootstrap_mean_of_means(groups, kBlock, seed), images});
+                           unless_degenerate(bootstrap_mean_of_means(groups, kBlock, seed)), images});
   }
 }
 
@@ -66,13 +73,13 @@ Row cost_row(const std::string& row, const std::string& quantity, double minstr,
   return {row, quantity, "Minstr", std::nullopt, minstr, std::nullopt, images};
 }
 
-Result<Cost> count_tracker(std::string_view tracker, const std::filesystem::path& folder) {
-  return count_self({"follow", "--tracker", std::string(tracker), "--input", folder.string(), "--images",
-                     std::to_string(kCountedImages)})
+Result<Cost> count_tracker(const Setting& setting, std::string_view tracker, const std::filesystem::path& folder) {
+  return count_follow(tracker, setting.config_file,
+                      {"--input", folder.string(), "--images", std::to_string(kCountedImages)})
       .map([](const Counted& counted) { return counted.image; });
 }
 
-Plot precision_over_time(const Film& film, const std::map<std::string_view, Boxes>& tracks) {
+Plot precision_over_time(const Film& film, const std::vector<std::pair<std::string_view, Boxes>>& tracks) {
   Plot plot{fmt::format("{}: precision, mean over ten images", film.name), "image", "precision", {}};
   for (const auto& [name, boxes] : tracks) {
     Curve curve{std::string(name), {}};
@@ -104,7 +111,7 @@ Result<Report> real_video(const Setting& setting) {
   for (std::string_view folder : kFolders) {
     const auto film = open_film(*setting.data / folder);
     if (!film) return tl::unexpected(film.error());
-    std::map<std::string_view, Boxes> tracks;
+    std::vector<std::pair<std::string_view, Boxes>> tracks;
     for (const NamedTracker& named : trackers()) {
       const std::string row = fmt::format("{} / {}", film->name, named.name);
       setting.progress(row);
@@ -113,14 +120,14 @@ Result<Report> real_video(const Setting& setting) {
       if (!boxes) return tl::unexpected(boxes.error());
       scores[named.name].push_back(score_images(*boxes, film->truth));
       add_film_rows(row, scores[named.name].back(), setting.seed, report);
-      tracks[named.name] = std::move(*boxes);
+      tracks.emplace_back(named.name, std::move(*boxes));
       if (!setting.count) continue;
       setting.progress(row + ", counting");
-      const auto cost = count_tracker(named.name, *setting.data / folder);
+      const auto cost = count_tracker(setting, named.name, *setting.data / folder);
       if (!cost) return tl::unexpected(cost.error());
       costs[named.name].push_back(*cost);
-      report.rows.push_back(cost_row(row, "mean", cost->mean_minstr, kCountedImages - 1));
-      report.rows.push_back(cost_row(row, "worst", cost->worst_minstr, kCountedImages - 1));
+      report.rows.push_back(cost_row(row, "cost", cost->mean_minstr, kCountedImages - 1));
+      report.rows.push_back(cost_row(row, "worst cost", cost->worst_minstr, kCountedImages - 1));
     }
     report.plots.push_back(precision_over_time(*film, tracks));
   }
@@ -134,8 +141,8 @@ Result<Report> real_video(const Setting& setting) {
     }
     if (!setting.count) continue;
     const int images = (kCountedImages - 1) * static_cast<int>(kFolders.size());
-    report.rows.push_back(cost_row(row, "mean", all.mean_minstr, images));
-    report.rows.push_back(cost_row(row, "worst", all.worst_minstr, images));
+    report.rows.push_back(cost_row(row, "cost", all.mean_minstr, images));
+    report.rows.push_back(cost_row(row, "worst cost", all.worst_minstr, images));
   }
   report.notes = {
       "The dissertation's Figure 3.3 is a curve over a film that is not public; it gives no table, so its column is "

@@ -17,7 +17,7 @@ constexpr double kDissertation = 1000.0 / 21.0;  // Minstr per image, had every 
 
 struct Case {
   std::string name;
-  std::vector<std::string> arguments;
+  std::vector<std::string> film;
 };
 
 std::vector<Case> cases(const Setting& setting) {
@@ -41,8 +41,8 @@ std::vector<Case> cases(const Setting& setting) {
 
 void add_rows(const std::string& row, const Cost& cost, int images, std::optional<double> dissertation,
               Report& report) {
-  report.rows.push_back({row, "mean", "Minstr", dissertation, cost.mean_minstr, std::nullopt, images});
-  report.rows.push_back({row, "worst", "Minstr", std::nullopt, cost.worst_minstr, std::nullopt, images});
+  report.rows.push_back({row, "cost", "Minstr", dissertation, cost.mean_minstr, std::nullopt, images});
+  report.rows.push_back({row, "worst cost", "Minstr", std::nullopt, cost.worst_minstr, std::nullopt, images});
 }
 
 }  // namespace
@@ -60,15 +60,10 @@ Result<Report> search_cost(const Setting& setting) {
   int images = 0;
   for (const Case& one : cases(setting)) {
     setting.progress(one.name);
-    std::vector<std::string> arguments{"follow",
-                                       "--tracker",
-                                       "ours",
-                                       "--size",
-                                       "640x480",
-                                       "--images",
-                                       std::to_string(setting.trials.value_or(kImages) + 1)};
-    arguments.insert(arguments.end(), one.arguments.begin(), one.arguments.end());
-    const auto counted = count_self(arguments);
+    std::vector<std::string> film{"--size", "640x480", "--images",
+                                  std::to_string(setting.trials.value_or(kImages) + 1)};
+    film.insert(film.end(), one.film.begin(), one.film.end());
+    const auto counted = count_follow("ours", setting.config_file, film);
     if (!counted) return tl::unexpected(counted.error());
     for (const auto& [stage, cost] : counted->stages) {
       add_rows(fmt::format("{} / {}", one.name, stage), cost, counted->images, std::nullopt, report);
