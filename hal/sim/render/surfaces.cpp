@@ -47,7 +47,10 @@ Vector3f off_the_chord(const Mesh& mesh, const Mesh::Triangle& t, const std::arr
 
 Surfaces::Surfaces(const Scene& scene) : scene_(&scene) {
   for (const Part& part : scene.parts) {
+    const Material& material = scene.materials[static_cast<std::size_t>(part.material)];
     PartData data;
+    data.moves = part.figure >= 0;
+    data.patterned = material.texture >= 0 || material.pattern != PatternKind::kPlain;
     data.triangles.reserve(part.mesh.triangles.size());
     for (const Mesh::Triangle& t : part.mesh.triangles) {
       const Vector3f& a = part.mesh.position_m[t.corner[0]];
@@ -57,6 +60,25 @@ Surfaces::Surfaces(const Scene& scene) : scene_(&scene) {
     }
     parts_.push_back(std::move(data));
   }
+}
+
+// The footprint is an ellipse: one pixel wide across the line of sight, longer by 1 / cos along it.
+void Surfaces::place(const Mesh& mesh, const Mesh::Triangle& triangle, const TriangleFrame& frame,
+                     const std::array<float, 3>& weight, const Tracer::Placement& X, const Ray& ray, Surfel& s) const {
+  s.at.uv = weight[0] * mesh.uv[triangle.corner[0]] + weight[1] * mesh.uv[triangle.corner[1]] +
+            weight[2] * mesh.uv[triangle.corner[2]];
+  const Vector3f ng = X.R * frame.n;
+  const float length = ray.direction.norm();
+  const float across = s.depth_m * ray.width;
+  const float cosine = std::max(0.02F, std::abs(ng.dot(ray.direction)) / length);
+  const Vector3f sideways = ng.cross(ray.direction);
+  const float sideways_length = sideways.norm();
+  const Vector3f a1 = sideways_length > 1e-6F * length ? Vector3f(sideways / sideways_length) : ng.unitOrthogonal();
+  const Vector3f a2 = ng.cross(a1) / cosine;
+  const Vector3f gu = X.R * frame.u_per_m;
+  const Vector3f gv = X.R * frame.v_per_m;
+  s.at.width =
+      across * Vector2f(std::abs(a1.dot(gu)) + std::abs(a2.dot(gu)), std::abs(a1.dot(gv)) + std::abs(a2.dot(gv)));
 }
 
 Surfel Surfaces::at(const Tracer& tracer, const Met& met, const Ray& ray, float depth_m) const {
@@ -72,9 +94,7 @@ Surfel Surfaces::at(const Tracer& tracer, const Met& met, const Ray& ray, float 
   s.polygon = triangle.polygon;
   s.depth_m = depth_m;
   s.p_W = ray.origin + depth_m * ray.direction;
-  s.at.uv = weight[0] * mesh.uv[triangle.corner[0]] + weight[1] * mesh.uv[triangle.corner[1]] +
-            weight[2] * mesh.uv[triangle.corner[2]];
-  const Vector3f ng = X.R * frame.n;
+  const Vector3f ng = data.moves ? Vector3f(X.R * frame.n) : frame.n;
   const float side = ng.dot(ray.direction) > 0.0F ? -1.0F : 1.0F;
   s.n_W = side * ng;
   s.p_WShadow = s.p_W;
@@ -88,19 +108,7 @@ Surfel Surfaces::at(const Tracer& tracer, const Met& met, const Ray& ray, float 
     }
   }
   s.p_WShadow += kLift_m * side * ng;
-
-  // The footprint is an ellipse: one pixel wide across the line of sight, longer by 1 / cos along it.
-  const float length = ray.direction.norm();
-  const float across = depth_m * ray.width;
-  const float cosine = std::max(0.02F, std::abs(ng.dot(ray.direction)) / length);
-  const Vector3f sideways = ng.cross(ray.direction);
-  const float sideways_length = sideways.norm();
-  const Vector3f a1 = sideways_length > 1e-6F * length ? Vector3f(sideways / sideways_length) : ng.unitOrthogonal();
-  const Vector3f a2 = ng.cross(a1) / cosine;
-  const Vector3f gu = X.R * frame.u_per_m;
-  const Vector3f gv = X.R * frame.v_per_m;
-  s.at.width =
-      across * Vector2f(std::abs(a1.dot(gu)) + std::abs(a2.dot(gu)), std::abs(a1.dot(gv)) + std::abs(a2.dot(gv)));
+  if (data.patterned) place(mesh, triangle, frame, weight, X, ray, s);
 
   if (frame.map >= 0) {
     s.open = open_at(maps_[static_cast<std::size_t>(frame.map)], s.p_W);

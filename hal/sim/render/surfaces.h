@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -19,8 +20,8 @@ struct Surfel {
   Eigen::Vector3f p_W = Eigen::Vector3f::Zero();
   Eigen::Vector3f n_W = Eigen::Vector3f::UnitZ();       ///< smooth where the surface is.
   Eigen::Vector3f p_WShadow = Eigen::Vector3f::Zero();  ///< where shadow rays start.
-  SurfacePoint at;
-  float open = 1.0F;  ///< share of the ambient light that gets there.
+  SurfacePoint at;                                      ///< left alone on surfaces of one colour.
+  float open = 1.0F;                                    ///< share of the ambient light that gets there.
 };
 
 /// A ray of the camera; direction with unit depth, so that the distance along it is the depth.
@@ -61,8 +62,12 @@ class Surfaces {
   struct PartData {
     std::vector<TriangleFrame> triangles;
     std::vector<float> open_at_corner;  // curved static parts, once baked
+    bool moves = false;
+    bool patterned = false;  // somebody looks at uv
   };
 
+  void place(const Mesh& mesh, const Mesh::Triangle& triangle, const TriangleFrame& frame,
+             const std::array<float, 3>& weight, const Tracer::Placement& X, const Ray& ray, Surfel& surfel) const;
   [[nodiscard]] float open_at(const OpenMap& map, const Eigen::Vector3f& p_W) const;
 
   const Scene* scene_;

@@ -8,6 +8,10 @@
 namespace cgsr::sim {
 
 Result<std::unique_ptr<Tracer>> Tracer::make(const Scene& scene) {
+  if (scene.figures.size() > kMostFigures) {
+    return fail(fmt::format("the scene '{}' has {} moving figures, more than {}", scene.name, scene.figures.size(),
+                            kMostFigures));
+  }
   std::unique_ptr<Tracer> tracer(new Tracer(scene));
   if (auto built = tracer->build(); !built) return tl::unexpected(built.error());
   return tracer;
@@ -42,7 +46,8 @@ RTCGeometry Tracer::geometry_of(const Part& part) {
     }
   }
   const bool map = part.figure < 0 && part.in_map;
-  rtcSetGeometryMask(geometry, kSightRays | (part.casts_shadow ? kShadowRays : 0U) | (map ? kMapRays : 0U));
+  rtcSetGeometryMask(geometry, kSightRays | (part.casts_shadow ? kShadowRays : 0U) | (map ? kMapRays : 0U) |
+                                   (part.figure >= 0 ? figure_rays(part.figure) : 0U));
   rtcCommitGeometry(geometry);
   return geometry;
 }
@@ -81,7 +86,7 @@ Result<void> Tracer::build() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     RTCGeometry instance = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(instance, objects_[i]);
-    rtcSetGeometryMask(instance, kSightRays | kShadowRays | kMapRays);
+    rtcSetGeometryMask(instance, ~0U);
     rtcCommitGeometry(instance);
     rtcAttachGeometryByID(top_, instance, static_cast<unsigned>(i));
     instances_.push_back(instance);

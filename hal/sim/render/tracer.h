@@ -20,6 +20,12 @@ enum RayKind : unsigned {
   kMapRays = 4U,     ///< static parts that the robot's map holds.
 };
 
+/// The parts of one figure alone. There are at most so many figures in a scene.
+inline constexpr int kMostFigures = 28;
+constexpr unsigned figure_rays(int figure) {
+  return 16U << static_cast<unsigned>(figure);
+}
+
 /// Eight rays at a time, which is what the tracer is fastest with.
 inline constexpr int kPacket = 8;
 

@@ -1,7 +1,7 @@
 #include "hal/sim/render/visibility.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
@@ -25,7 +25,9 @@ std::array<Vector2f, kCount> disc_points() {
   return points;
 }
 
-const std::array<Vector2f, 4> kFour = disc_points<4>();
+constexpr float kRimRadius = 0.98F;
+const std::array<Vector2f, 4> kRim{Vector2f(kRimRadius, 0.0F), Vector2f(0.0F, kRimRadius), Vector2f(-kRimRadius, 0.0F),
+                                   Vector2f(0.0F, -kRimRadius)};
 const std::array<Vector2f, 16> kSixteen = disc_points<16>();
 const std::array<Vector2f, 256> kTurns = [] {
   std::array<Vector2f, 256> turns;
@@ -113,7 +115,7 @@ std::array<float, kPacket> visible_share(const Tracer& tracer, const ShadowQuery
     return share;
   }
   std::array<int, kPacket> seen{};
-  for (const Vector2f& point : kFour) {
+  for (const Vector2f& point : kRim) {
     ShadowPacket packet;
     for (int lane = 0; lane < kPacket; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
@@ -124,14 +126,22 @@ std::array<float, kPacket> visible_share(const Tracer& tracer, const ShadowQuery
     tracer.blocked(packet.valid, packet.rays, coherent);
     for (int lane = 0; lane < kPacket; ++lane) seen[static_cast<std::size_t>(lane)] += packet.hit(lane) ? 0 : 1;
   }
+  int least = 4;
+  int most = 0;
   for (std::size_t i = 0; i < kPacket; ++i) {
     if (!query.wanted[i]) continue;
-    share[i] =
-        seen[i] == 0 ? 0.0F
-        : seen[i] == 4
-            ? 1.0F
-            : static_cast<float>(sixteen(tracer, query.from[i], Disc(query.from[i], p_WL, radius_m, query.seed[i]))) /
-                  16.0F;
+    least = std::min(least, seen[i]);
+    most = std::max(most, seen[i]);
+  }
+  const bool agreed = least == most && (most == 0 || most == 4);
+  for (std::size_t i = 0; i < kPacket; ++i) {
+    if (!query.wanted[i]) continue;
+    if (agreed) {
+      share[i] = most == 0 ? 0.0F : 1.0F;
+    } else {
+      const Disc disc(query.from[i], p_WL, radius_m, query.seed[i]);
+      share[i] = static_cast<float>(sixteen(tracer, query.from[i], disc)) / 16.0F;
+    }
   }
   return share;
 }

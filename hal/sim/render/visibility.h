@@ -14,8 +14,9 @@ struct ShadowQuery {
   std::array<std::uint32_t, kPacket> seed{};
 };
 
-/// The share of a lamp's disc that each wanted place sees: 0 or 1 for a point; for a ball of `radius_m` out of 4 samples, and out of 16
-/// where those disagree.
+/// The share of a lamp's disc that each wanted place sees: 0 or 1 for a point. For a ball of `radius_m`, 4 points on its rim, turned
+/// differently for every place, tell whether the whole bundle is in full light or full shadow; if they do not all agree, 16 samples for
+/// each place tell how much.
 std::array<float, kPacket> visible_share(const Tracer& tracer, const ShadowQuery& query, const Eigen::Vector3f& p_WL,
                                          float radius_m, bool coherent);
 
