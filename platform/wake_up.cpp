@@ -16,9 +16,7 @@ WakeUp::~WakeUp() {
 
 void WakeUp::wake() noexcept {
   if (pending_.exchange(true, std::memory_order_acq_rel)) return;
-  const int interrupted_call = errno;
-  sem_post(&semaphore_);
-  errno = interrupted_call;  // a signal handler must leave errno as it found it
+  sem_post(&semaphore_);  // cannot fail, so it leaves errno alone: the count is at most one
 }
 
 bool WakeUp::wait_until(MonoTime give_up_at) noexcept {

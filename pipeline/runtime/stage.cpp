@@ -37,6 +37,7 @@ Result<void> StageRunner::bind_rows(std::initializer_list<Binding> stages) {
 
 void StageRunner::begin_frame(const FrameStart& start, const FrameRecord* repeat) {
   repeat_ = repeat;
+  if (repeat != nullptr) frame_ = repeat->frame;  // a repetition may begin anywhere
   record_ = FrameRecord{};
   record_.frame = frame_;
   record_.image_sequence = start.image_sequence;

@@ -59,6 +59,35 @@ TEST(Ring, DestroysWhatIsLeft) {
   EXPECT_EQ(value.use_count(), 1);
 }
 
+/// Counts the objects of its kind, moved-from ones included.
+struct Counted {
+  Counted() { ++alive; }
+  Counted(Counted&& /*other*/) noexcept { ++alive; }
+  Counted(const Counted&) = delete;
+  Counted& operator=(const Counted&) = delete;
+  ~Counted() { --alive; }
+  static inline int alive = 0;
+};
+
+TEST(Ring, DestroysEachObjectOnce) {
+  {
+    Ring<Counted, 3> ring;
+    for (int lap = 0; lap < 5; ++lap) {
+      EXPECT_TRUE(ring.push(Counted()));
+      EXPECT_TRUE(ring.push(Counted()));
+      EXPECT_EQ(Counted::alive, 2) << "no more than what lies in the ring";
+      if (lap % 2 == 0) {
+        static_cast<void>(ring.pop());
+        EXPECT_EQ(Counted::alive, 1);
+      }
+      static_cast<void>(ring.pop_newest());
+      EXPECT_EQ(Counted::alive, 0);
+    }
+    EXPECT_TRUE(ring.push(Counted()));
+  }
+  EXPECT_EQ(Counted::alive, 0);
+}
+
 class CountingLender final : public ImageLender {
  public:
   void give_back(int slot) noexcept override { last = slot, ++count; }

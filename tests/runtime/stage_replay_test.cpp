@@ -112,6 +112,31 @@ TEST(StageReplay, RepeatsEveryDecisionOfTheRecording) {
   }
 }
 
+// A repetition may begin in the middle: turns that were lost because of an earlier frame are in the record.
+TEST(StageReplay, MayBeginAnywhere) {
+  std::vector<FrameRecord> recording;
+  {
+    SimulatedClock clock;
+    std::mt19937 weather(1);
+    Loop live(clock, weather, BudgetSource::kClock);
+    for (int i = 0; i < 400; ++i) recording.push_back(live.frame(i));
+  }
+  int skips = 0;
+  for (int begin = 1; begin < 400; ++begin) {
+    SimulatedClock clock;
+    std::mt19937 weather(2);
+    Loop replay(clock, weather, BudgetSource::kUnits);
+    const auto& then = recording[static_cast<std::size_t>(begin)];
+    const auto now = replay.frame(begin, &then);
+    ASSERT_EQ(now.frame, then.frame);
+    for (std::size_t row = 0; row < then.stage_count; ++row) {
+      ASSERT_EQ(now.stages[row].outcome, then.stages[row].outcome) << begin;
+      skips += then.stages[row].outcome == StageOutcome::kSkipped ? 1 : 0;
+    }
+  }
+  EXPECT_GT(skips, 3);
+}
+
 TEST(StageReplay, WithoutItsRecordTheOtherMachineWouldHaveDecidedOtherwise) {
   SimulatedClock one_clock;
   SimulatedClock other_clock;
