@@ -68,7 +68,7 @@ tl::expected<Odometry, DriveFailure> RmpDrive::odometry(MonoTime now) {
   // What is new (a stop above all) goes out at once, the same again only in time.
   const bool something_new = speech_.commands == 0 || motion_due(now) != speech_.last;
   const bool time_to_repeat = !speech_.tried_at || now - *speech_.tried_at >= kRepeatAfter;
-  if (mode_due(now) || (speech_.wanted_at && (something_new || time_to_repeat))) speak(now);
+  if (speech_.wanted_at && (mode_due(now) || something_new || time_to_repeat)) speak(now);
 
   if (!listener_.complete() || listener_.stale(now)) return tl::unexpected(DriveFailure::kNoFeedback);
   return listener_.odometry();
@@ -76,9 +76,11 @@ tl::expected<Odometry, DriveFailure> RmpDrive::odometry(MonoTime now) {
 
 void RmpDrive::stop() {
   if (!started_) return;
-  CanFrame zero = encode(Command{});
-  zero.stamp = now_;
-  (void)bus_->send(zero);  // refused: nothing more can be done, the base stops by itself
+  if (speech_.wanted_at) {
+    CanFrame zero = encode(Command{});
+    zero.stamp = now_;
+    (void)bus_->send(zero);  // refused: nothing more can be done, the base stops by itself
+  }
   bus_->stop();
   started_ = false;
 }

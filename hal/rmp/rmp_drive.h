@@ -26,6 +26,7 @@ struct RmpCounters {
 /// for up to hold_s, then zero: the base itself would go on for 400 ms. Listens whenever command() or odometry() is
 /// called, so one of them must be, every 30 ms or so.
 ///
+/// Until the first command() it says nothing at all, not even in stop(): a dry run leaves the base to others.
 /// Zero goes out, whatever is commanded, as long as fault() is not kNone. Every fault latches (FaultLatch) except,
 /// before the base was ready for the first time, that it is off, silent or without motors: those are waited for.
 ///

@@ -140,9 +140,12 @@ TEST(RmpDrive, HoldsACommandForAWhileAndThenCommandsZero) {
 }
 
 TEST(RmpDrive, IsSilentUntilTheFirstCommand) {
-  Rig rig;
+  Rig::Setup setup;
+  setup.drive.mode_at_start = hal::rmp::ModeAtStart::kTractor;  // asked for with the first command, not before
+  Rig rig(setup);
   const Commands commands(rig);
   for (int i = 0; i < 100; ++i) (void)rig.drive.odometry(rig.now += seconds(0.010));
+  rig.drive.stop();
   EXPECT_TRUE(commands.frames().empty());
 }
 
