@@ -1,22 +1,25 @@
 #include "pipeline/color/distinctiveness.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace cgsr::color {
 namespace {
 
-constexpr double kDark = 0.12;   // below: no hue
-constexpr double kNoise = 0.02;  // added to each channel: keeps the logarithm of a channel near 0 from wandering
-constexpr double kCell = 0.1;    // of the plane (ln R/G, ln B/G)
-constexpr int kReach = 2;        // cells to either side: a square of 5 x 5 cells, half side 0.25
-constexpr int kSide = 81;        // cells per axis, +-4: beyond any ratio that kNoise leaves
-constexpr int kPadded = kSide + 1;
+constexpr double kShading = 1.4;
+constexpr double kNoise = 0.07;
+constexpr std::size_t kMostColors = 512;   // tried as c
+constexpr std::size_t kMostPixels = 8192;  // looked at for each
 
-int cell_of(double log_ratio) {
-  return std::clamp(static_cast<int>(std::lround(log_ratio / kCell)) + kSide / 2, 0, kSide - 1);
+double dot(const imaging::Rgb& a, const imaging::Rgb& b) {
+  return a.r * b.r + a.g * b.g + a.b * b.b;
+}
+
+bool explains(const imaging::Rgb& c, const imaging::Rgb& pixel) {
+  const double s = std::clamp(dot(pixel, c) / std::max(dot(c, c), 1e-9), 1.0 / kShading, kShading);
+  const imaging::Rgb off{pixel.r - s * c.r, pixel.g - s * c.g, pixel.b - s * c.b};
+  return dot(off, off) <= kNoise * kNoise;
 }
 
 // Jensen-Shannon divergence between a distribution and its own part of mass m, renormalised.
@@ -29,32 +32,18 @@ double divergence_to_part(double m) {
 
 Distinctiveness distinctiveness_of(std::span<const imaging::Rgb> textures) {
   if (textures.empty()) return {};
-  std::array<std::array<int, kPadded>, kPadded> sums{};  // counts first, then a summed-area table
-  int dark = 0;
-  for (const auto& c : textures) {
-    if (std::max({c.r, c.g, c.b}) < kDark) {
-      ++dark;
-      continue;
-    }
-    const int x = cell_of(std::log((c.r + kNoise) / (c.g + kNoise)));
-    const int y = cell_of(std::log((c.b + kNoise) / (c.g + kNoise)));
-    ++sums[static_cast<std::size_t>(y + 1)][static_cast<std::size_t>(x + 1)];
+  const std::size_t color_step = (textures.size() + kMostColors - 1) / kMostColors;
+  const std::size_t pixel_step = (textures.size() + kMostPixels - 1) / kMostPixels;
+  std::size_t most = 0;
+  std::size_t looked_at = 0;
+  for (std::size_t c = 0; c < textures.size(); c += color_step) {
+    std::size_t explained = 0;
+    looked_at = 0;
+    for (std::size_t i = 0; i < textures.size(); i += pixel_step, ++looked_at)
+      explained += explains(textures[c], textures[i]) ? 1 : 0;
+    most = std::max(most, explained);
   }
-  for (std::size_t y = 1; y < kPadded; ++y) {
-    for (std::size_t x = 1; x < kPadded; ++x) sums[y][x] += sums[y - 1][x] + sums[y][x - 1] - sums[y - 1][x - 1];
-  }
-
-  int most = 0;
-  for (int y = 0; y < kSide; ++y) {
-    const auto top = static_cast<std::size_t>(std::max(0, y - kReach));
-    const auto bottom = static_cast<std::size_t>(std::min(kSide, y + kReach + 1));
-    for (int x = 0; x < kSide; ++x) {
-      const auto left = static_cast<std::size_t>(std::max(0, x - kReach));
-      const auto right = static_cast<std::size_t>(std::min(kSide, x + kReach + 1));
-      most = std::max(most, sums[bottom][right] - sums[top][right] - sums[bottom][left] + sums[top][left]);
-    }
-  }
-  const double m = static_cast<double>(most + dark) / static_cast<double>(textures.size());
+  const double m = static_cast<double>(most) / static_cast<double>(looked_at);
   return {divergence_to_part(m), m};
 }
 

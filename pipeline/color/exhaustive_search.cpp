@@ -42,11 +42,11 @@ Candidate best_light(const Similarity& similarity, const std::vector<int>& count
     for (int light = 0; light < similarity.lights(); ++light)
       units[static_cast<std::size_t>(light)] += similarity.units(label, level, light);
   }
+  for (auto& sum : units) sum = std::min(sum, kMaxUnits);
   const auto best = std::max_element(units.begin(), units.end());
   Candidate candidate;
-  candidate.units = std::min(*best, kMaxUnits);
-  for (auto& sum : units) sum = std::min(sum, kMaxUnits);
-  candidate.light = static_cast<int>(std::max_element(units.begin(), units.end()) - units.begin());
+  candidate.units = *best;
+  candidate.light = static_cast<int>(best - units.begin());
   return candidate;
 }
 
@@ -86,6 +86,7 @@ tl::expected<SearchResult, SearchFailure> exhaustive_search(const ColorModel& mo
   std::vector<GridWindow> taken;
   for (const auto& candidate : candidates) {
     if (result.count == request.candidates) break;
+    if (candidate.rank < candidates.front().rank - shortfall_units(request.max_shortfall)) break;
     const bool free = std::none_of(taken.begin(), taken.end(), [&](const GridWindow& other) {
       return grid->collide(candidate.window, other, request.max_overlap);
     });

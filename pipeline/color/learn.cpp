@@ -119,14 +119,15 @@ Box window_box(const PixelRect& rect, int factor) {
 
 std::string words_for(const Distinctiveness& before, const Distinctiveness& after, double growth, double needed) {
   if (growth == 0.0) {
-    return fmt::format("distinctiveness {:.3f} nat (one hue explains {:.0f} % of the region; {:.3f} needed)",
-                       after.divergence, 100.0 * after.largest_hue, needed);
+    return fmt::format("distinctiveness {:.3f} nat (one colour explains {:.0f} % of the region; {:.3f} needed)",
+                       after.divergence, 100.0 * after.largest_share, needed);
   }
   return fmt::format(
-      "one hue explains {:.0f} % of the box, which under some light is any plain surface (distinctiveness {:.3f} nat, "
+      "one colour explains {:.0f} % of the box, which under some light is any plain surface (distinctiveness {:.3f} "
+      "nat, "
       "{:.3f} needed): "
       "widened by {:.0f} % per side to take in surroundings, distinctiveness {:.3f} nat",
-      100.0 * before.largest_hue, before.divergence, needed, 100.0 * growth, after.divergence);
+      100.0 * before.largest_share, before.divergence, needed, 100.0 * growth, after.divergence);
 }
 
 }  // namespace
@@ -172,10 +173,10 @@ Result<Learned> learn(std::span<const Sample> samples, const LearnParameters& pa
     growth += kWideningStep;
     if (!parameters.widen || growth > parameters.max_widening + 1e-9) {
       return fail(
-          fmt::format("one hue explains {:.0f} % of the region: under some light it is any plain surface "
+          fmt::format("one colour explains {:.0f} % of the region: under some light it is any plain surface "
                       "(distinctiveness {:.3f} nat, "
                       "{:.3f} needed){}; take in something of another colour",
-                      100.0 * at_first.largest_hue, at_first.divergence, parameters.min_distinctiveness,
+                      100.0 * at_first.largest_share, at_first.divergence, parameters.min_distinctiveness,
                       parameters.widen ? ", and its surroundings do not help" : ", and widening is off"));
     }
     views = views_of(samples, images, growth, parameters);

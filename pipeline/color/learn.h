@@ -16,7 +16,7 @@ namespace cgsr::color {
 struct LearnParameters {
   imaging::ColorBins bins;
   LightParameters lights;
-  double min_distinctiveness = 0.04;
+  double min_distinctiveness = 0.01;
   bool widen = true;
   double max_widening = 0.6;
   double surroundings = 0.5;

@@ -62,9 +62,11 @@ struct SearchRequest {
       1;  ///< how many matches at most, 1..kMaxMatches: local maxima, each the best of what the ones before leave.
   double max_overlap =
       0.0;  ///< of two matches at most this share of the smaller one may be covered by the other, 0..1.
+  double max_shortfall =
+      1.0;  ///< similarity (0..1) by which a further match may rank below the first. The lower, the cheaper.
   std::optional<Box> region;  ///< windows lie wholly inside; nothing: the whole image.
   std::optional<Prior> prior;
-  WorkBudget* budget = nullptr;  ///< asked once per unit (16 neighbouring windows looked into); nothing: unlimited.
+  WorkBudget* budget = nullptr;  ///< asked before each group of windows that is looked into; nothing: unlimited.
 };
 
 struct Match {

@@ -58,6 +58,11 @@ class Similarity {
 /// The prior's penalty in units for a window centred at (x_px, y_px).
 int penalty_units(const Prior& prior, double x_px, double y_px);
 
+/// What a further match may lack of the first, in units.
+inline int shortfall_units(double max_shortfall) {
+  return static_cast<int>(max_shortfall * kOne);
+}
+
 /// \return the divergence that `units` of similarity stand for.
 double divergence_of_units(Divergence divergence, int units);
 

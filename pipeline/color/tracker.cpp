@@ -1,19 +1,235 @@
 #include "pipeline/color/tracker.h"
 
 #include <algorithm>
-
+#include <cmath>
 #include <utility>
 
+#include "pipeline/color/box_divergence.h"
+#include "pipeline/color/light_estimate.h"
 #include "pipeline/color/window_search.h"
 
 namespace cgsr::color {
+namespace {
+
+constexpr double kLargestGrowth = 1.25;  // from one image to the next
+constexpr int kRefinements = 3;
+constexpr double kSamePlace = 0.5;  // boxes that overlap by more are the same answer
+
+double overlap(const Box& a, const Box& b) {
+  const double shared = intersection(a, b).area();
+  return shared / (a.area() + b.area() - shared);
+}
+
+Box centred_on(const Box& place, double width, double height) {
+  return {place.x + 0.5 * (place.width - width), place.y + 0.5 * (place.height - height), width, height};
+}
+
+/// A box about its centre, grown by a factor that is held within reason.
+Box grown(const Box& box, double factor, const ColorModel& model, double limit) {
+  const double asked = std::clamp(factor, 1.0 / kLargestGrowth, kLargestGrowth);
+  const double width = std::clamp(box.width * asked, model.width_px / limit, model.width_px * limit);
+  return centred_on(box, width, box.height * width / box.width);
+}
+
+Box with_centre_inside(Box box, int width_px, int height_px) {
+  box.x = std::clamp(box.x, -0.5 * box.width, width_px - 0.5 * box.width);
+  box.y = std::clamp(box.y, -0.5 * box.height, height_px - 0.5 * box.height);
+  return box;
+}
+
+}  // namespace
+
+/// A place for the object, with everything that is known in favour of it.
+struct Place {
+  LocalAnswer local;
+  double divergence = 0.0;
+};
 
 struct Tracker::State {
+  State(const ColorModel& m, const TrackParameters& p, WindowSearch s, int max_width_px, int max_height_px)
+      : model(m),
+        parameters(p),
+        search(std::move(s)),
+        divergence(m, p.search.divergence),
+        pyramid(max_width_px, max_height_px),
+        local(p.local) {
+    learn_from_model();
+  }
+
+  void learn_from_model();
+  SearchResult search_all(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  TrackedObject track_plain(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  TrackedObject track_full(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  Place look(const imaging::ReducedImage& reduced, const Box& box);
+  [[nodiscard]] bool is_weak(const Place& place) const;
+  [[nodiscard]] bool ends_loss(const Place& place) const;
+  bool jump(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
+  bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
+  TrackedObject answer(const Box& box, double divergence_of_box);
+
   ColorModel model;
   TrackParameters parameters;
   WindowSearch search;
-  std::optional<Box> last;
+  BoxDivergence divergence;
+  imaging::Pyramid pyramid;
+  LocalTracker local;
+  ChannelQuantiles learned_quantiles;
+  Light learned_light;
+
+  bool located = false;  ///< `box` is where the object was in the last image.
+  Box box;
+  double mean_score = 0.0;
+  double mean_divergence = 0.0;
+  int images_since_sight = 0;
+  int weak_images = 0;
 };
+
+/// Until an image is there in which the object was learned, the patch that the model keeps of it has to do.
+void Tracker::State::learn_from_model() {
+  box = {0.0, 0.0, model.width_px, model.height_px};
+  if (model.samples.empty()) return;
+  const SamplePatch& sample = model.samples.front();
+  imaging::Pyramid patch(sample.width_px, sample.height_px);
+  patch.build(sample.view());
+  local.begin(patch, sample.window);
+  learned_quantiles = channel_quantiles(patch, sample.window);
+  learned_light = sample.light;
+  const LocalAnswer itself = local.look(patch, sample.window);
+  mean_score = itself.score;
+}
+
+SearchResult Tracker::State::search_all(const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  SearchRequest request;
+  const bool plain = parameters.mode == TrackMode::kPlain;
+  request.width_px = plain ? model.width_px : box.width;
+  request.height_px = plain ? model.height_px : box.height;
+  request.max_divergence = parameters.max_divergence;
+  request.candidates = plain ? 1 : parameters.candidates;
+  request.budget = &budget;
+  return search.search(reduced, request).value_or(SearchResult{});
+}
+
+TrackedObject Tracker::State::track_plain(const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  const SearchResult result = search_all(reduced, budget);
+  if (result.count == 0) return {};
+  const Match& best = result.matches.front();
+  const Light light = model.lights[static_cast<std::size_t>(best.light)];
+  return {true, best.box, best.divergence, light, light};
+}
+
+/// The whole image is searched in any case. Where the object was, the local tracker says how it moved; what it says is doubted by three
+/// measures together, and then the search's best windows stand against it: a prior, not a cage.
+TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  const SearchResult matches = search_all(reduced, budget);
+  Place place;
+  bool sure = false;
+  if (located) {
+    local.follow_light(pyramid);
+    place = look(reduced, box);
+    const bool lost = weak_images >= parameters.doubt.lost_after_images;
+    if (!lost) {
+      sure = !is_weak(place) || jump(reduced, matches, budget, place);
+      weak_images = sure ? 0 : weak_images + 1;
+      if (!sure && weak_images >= parameters.doubt.lost_after_images) return {};
+    } else if (ends_loss(place)) {
+      sure = true;
+      weak_images = 0;
+    }
+  }
+  const bool searching = !located || weak_images >= parameters.doubt.lost_after_images;
+  if (searching) {
+    if (!find(reduced, matches, budget, place)) return {};
+    sure = true;
+  }
+
+  Box now = place.local.box;
+  if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.size_limit);
+  now = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
+  box = now;
+  if (sure) {
+    local.learn(pyramid, box);
+    const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
+    mean_score += rate * (place.local.score - mean_score);
+    mean_divergence += rate * (place.divergence - mean_divergence);
+  }
+  ++images_since_sight;
+  local.remember(pyramid, box);
+  return answer(box, place.divergence);
+}
+
+Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) {
+  const LocalAnswer local_answer = local.look(pyramid, at);
+  return {local_answer, divergence.of(reduced, local_answer.box).divergence};
+}
+
+bool Tracker::State::is_weak(const Place& place) const {
+  const DoubtParameters& doubt = parameters.doubt;
+  return images_since_sight >= doubt.warm_up_images && place.local.sharpness < doubt.weak_sharpness &&
+         place.local.score < doubt.weak_score * mean_score &&
+         place.divergence > mean_divergence + doubt.weak_divergence;
+}
+
+bool Tracker::State::ends_loss(const Place& place) const {
+  const DoubtParameters& doubt = parameters.doubt;
+  return place.local.sharpness >= doubt.found_sharpness && place.local.score >= doubt.found_score * mean_score &&
+         place.divergence <= mean_divergence + doubt.weak_divergence;
+}
+
+/// \return whether one of the search's windows is more credible than `place`, which it then replaces.
+bool Tracker::State::jump(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                          Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
+  bool jumped = false;
+  for (int i = 0; i < matches.count && budget.grant(); ++i) {
+    const Box start = centred_on(matches.matches[static_cast<std::size_t>(i)].box, box.width, box.height);
+    if (overlap(start, place.local.box) > kSamePlace) continue;
+    const Place other = look(reduced, start);
+    if (other.local.score <= place.local.score || other.local.sharpness <= place.local.sharpness) continue;
+    if (other.divergence >= place.divergence - doubt.jump_divergence) continue;
+    if (other.local.sharpness <= doubt.jump_sharpness || other.local.score <= doubt.jump_score * mean_score) continue;
+    place = other;
+    jumped = true;
+  }
+  return jumped;
+}
+
+/// First sight, or sight again after a loss: each window of the search is looked at under its own light.
+bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                          Place& place) {
+  Light gain;
+  bool any = false;
+  for (int i = 0; i < matches.count && budget.grant(); ++i) {
+    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
+    const Light its_gain = light_gain(learned_quantiles, channel_quantiles(pyramid, window));
+    const LocalAnswer seen = local.look_under(its_gain, pyramid, centred_on(window, model.width_px, model.height_px));
+    if (any && seen.score <= place.local.score) continue;
+    place.local = seen;
+    gain = its_gain;
+    any = true;
+  }
+  if (!any) return false;
+  for (int round = 0; round < kRefinements && budget.grant(); ++round) {
+    place.local = local.look_under(gain, pyramid, place.local.box);
+    place.local.box = grown(place.local.box, local.growth(pyramid, place.local.box), model, parameters.size_limit);
+    gain = light_gain(learned_quantiles, channel_quantiles(pyramid, place.local.box));
+  }
+  place.divergence = divergence.of(reduced, place.local.box).divergence;
+  if (place.local.sharpness < parameters.doubt.found_sharpness) return false;
+  if (place.local.score < parameters.doubt.found_score * mean_score) return false;
+  if (place.divergence > parameters.max_divergence) return false;
+  local.believe_light();
+  located = true;
+  weak_images = 0;
+  images_since_sight = 0;
+  return true;
+}
+
+TrackedObject Tracker::State::answer(const Box& at, double divergence_of_box) {
+  const Light gain = light_gain(learned_quantiles, channel_quantiles(pyramid, at));
+  const Light exact = lit(learned_light, gain);
+  const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
+  return {true, intersection(at, image), divergence_of_box, nearest_of(model, exact), exact};
+}
 
 Result<Tracker> Tracker::create(const ColorModel& model, const TrackParameters& parameters, int max_width_px,
                                 int max_height_px) {
@@ -21,10 +237,12 @@ Result<Tracker> Tracker::create(const ColorModel& model, const TrackParameters& 
   if (parameters.mode == TrackMode::kPlain) {
     settings.weights = BinWeights::kPlain;
     settings.sizes = 1;
+  } else if (model.samples.empty()) {
+    return fail("the colour model keeps no picture of the object, which mode \"full\" needs: learn it again");
   }
   auto search = WindowSearch::create(model, settings, max_width_px, max_height_px);
   if (!search) return tl::unexpected(search.error());
-  return Tracker(std::make_unique<State>(State{model, parameters, std::move(*search), std::nullopt}));
+  return Tracker(std::make_unique<State>(model, parameters, std::move(*search), max_width_px, max_height_px));
 }
 
 Tracker::Tracker(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -40,22 +258,25 @@ int Tracker::reduction(int width_px, int height_px) const {
   return imaging::reduction_for(width_px, height_px, std::min(state_->model.width_px, state_->model.height_px));
 }
 
-void Tracker::place(const Box& box) {
-  state_->last = box;
+void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box) {
+  State& s = *state_;
+  s.pyramid.build(image);
+  s.local.begin(s.pyramid, box);
+  s.learned_quantiles = channel_quantiles(s.pyramid, box);
+  const Place itself = s.look(reduced, box);
+  s.mean_score = itself.local.score;
+  s.mean_divergence = s.divergence.of(reduced, box).divergence;
+  s.box = box;
+  s.located = true;
+  s.images_since_sight = 0;
+  s.weak_images = 0;
 }
 
-TrackedObject Tracker::track(const ImageView& /*image*/, const imaging::ReducedImage& reduced, WorkBudget& budget) {
-  SearchRequest request;
-  const bool resize = state_->parameters.mode == TrackMode::kFull && state_->last;
-  request.width_px = resize ? state_->last->width : state_->model.width_px;
-  request.height_px = resize ? state_->last->height : state_->model.height_px;
-  request.max_divergence = state_->parameters.max_divergence;
-  request.budget = &budget;
-  const auto result = state_->search.search(reduced, request);
-  if (!result || result->count == 0) return {};
-  const Match& best = result->matches.front();
-  state_->last = best.box;
-  return {true, best.box, best.divergence, state_->model.lights[static_cast<std::size_t>(best.light)]};
+TrackedObject Tracker::track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  State& s = *state_;
+  if (s.parameters.mode == TrackMode::kPlain) return s.track_plain(reduced, budget);
+  s.pyramid.build(image);
+  return s.track_full(reduced, budget);
 }
 
 }  // namespace cgsr::color

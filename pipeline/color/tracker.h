@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 
 #include "pipeline/color/color_model.h"
+#include "pipeline/color/local_tracker.h"
 #include "pipeline/color/search_types.h"
 #include "pipeline/imaging/reduce.h"
 #include "platform/box.h"
@@ -18,7 +18,7 @@ namespace cgsr::color {
 
 enum class TrackMode : std::uint8_t {
   kPlain,  ///< Alg. 3.2 as the dissertation has it: one size, plain bins, the best window below the threshold, no prior.
-  kFull,   ///< ours: see the README of this folder.
+  kFull,   ///< ours: the same search of the whole image, three sizes, and a local tracker that makes the box fit.
 };
 
 inline constexpr std::array kTrackModeNames{
@@ -26,26 +26,73 @@ inline constexpr std::array kTrackModeNames{
     Named<TrackMode>{"full", TrackMode::kFull},
 };
 
+/// When the local tracker is doubted, and what makes a place elsewhere in the image more credible. Scores are compared with their running
+/// mean while the object was surely seen, divergences with theirs.
+struct DoubtParameters {
+  int warm_up_images = 8;
+  double mean_rate = 0.05;
+  double weak_sharpness = 8.0;
+  double weak_score = 0.8;
+  double weak_divergence = 0.1;
+  double jump_sharpness = 7.0;
+  double jump_score = 0.8;
+  double jump_divergence = 0.05;
+  int lost_after_images = 3;
+  double found_sharpness = 8.0;
+  double found_score = 0.7;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("warm_up_images", self.warm_up_images, {0, 1000}, "",
+                 "images after a first sight in which nothing is doubted");
+    visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "", "share of each sure image in the running means");
+    visit.number("weak_sharpness", self.weak_sharpness, {0.0, 50.0}, "",
+                 "a peak below this, with the next two, is doubted");
+    visit.number("weak_score", self.weak_score, {0.0, 2.0}, "", "a score below this share of its mean");
+    visit.number("weak_divergence", self.weak_divergence, {0.0, 0.7}, "nat",
+                 "a divergence above its mean by more than this");
+    visit.number("jump_sharpness", self.jump_sharpness, {0.0, 50.0}, "",
+                 "what a place elsewhere needs to be believed instead");
+    visit.number("jump_score", self.jump_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+    visit.number("jump_divergence", self.jump_divergence, {0.0, 0.7}, "nat", "and by how much its divergence is lower");
+    visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
+                 "doubtful images after which the object is lost");
+    visit.number("found_sharpness", self.found_sharpness, {0.0, 50.0}, "", "what ends a loss");
+    visit.number("found_score", self.found_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+  }
+};
+
 struct TrackParameters {
   TrackMode mode = TrackMode::kFull;
   double max_divergence = 0.30;
+  int candidates = 3;
+  double size_limit = 5.0;
   SearchParameters search;
+  LocalParameters local;
+  DoubtParameters doubt;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("mode", self.mode, kTrackModeNames, "plain: the dissertation's Alg. 3.2; full: ours");
-    visit.number("max_divergence", self.max_divergence, Range{0.0, 0.7}, "nat",
+    visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
                  "a window farther than this from every learned histogram is not the object");
-    visit.section("search", self.search, "the search over the whole image");
+    visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
+                 "best windows of the search that are looked at closely");
+    visit.number("size_limit", self.size_limit, {1.0, 20.0}, "",
+                 "largest and smallest box, as a factor of the learned one's sides");
+    visit.section("search", self.search, "The search over the whole image");
+    visit.section("local", self.local, "The local tracker");
+    visit.section("doubt", self.doubt, "When it is doubted");
   }
 };
 
 /// Where the object is in one image.
 struct TrackedObject {
   bool found = false;
-  Box box;                  ///< camera pixels; read only when found, as all below.
-  double divergence = 0.0;  ///< [nat] from the learned histogram under the matched light.
-  Light light;  ///< the light of the grid that matched best (Alg. 3.2, line 10); never preferred in the next image.
+  Box box;                  ///< camera pixels, inside the image; read only when found, as all below.
+  double divergence = 0.0;  ///< [nat] of the box from the learned histogram, under the light that fits best.
+  Light light;              ///< the light of the grid that fits best; never preferred in the next image (3.2.2).
+  Light exact_light;        ///< the same, not bound to the grid.
 };
 
 /// Finds a learned object in image after image (chapter 3).
@@ -64,10 +111,11 @@ class Tracker {
   [[nodiscard]] const imaging::LabelTable& labels() const;
   [[nodiscard]] int reduction(int width_px, int height_px) const;
 
-  /// Says where the object is known to be, as after learning from the image before: a prior for the next image.
-  void place(const Box& box);
+  /// Says where the object is known to be, as in the image that it was learned from.
+  void place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box);
 
   /// One image. \param image  as the camera sent it. \param reduced  the same, reduced with labels() and reduction().
+  /// \param budget  asked once per unit of the search and once per closer look.
   TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget);
 
  private:

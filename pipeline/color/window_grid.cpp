@@ -14,7 +14,10 @@ bool in(double value, double low, double high) {
 
 bool is_sound(const SearchRequest& request) {
   if (!in(request.width_px, 1.0, kMaxSide) || !in(request.height_px, 1.0, kMaxSide)) return false;
-  if (!in(request.max_divergence, 0.0, 1.0) || !in(request.max_overlap, 0.0, 1.0)) return false;
+  if (!in(request.max_divergence, 0.0, 1.0) || !in(request.max_overlap, 0.0, 1.0) ||
+      !in(request.max_shortfall, 0.0, 1.0)) {
+    return false;
+  }
   if (request.candidates < 1 || request.candidates > kMaxMatches) return false;
   if (request.region) {
     const Box& r = *request.region;

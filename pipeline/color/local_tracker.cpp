@@ -1,0 +1,194 @@
+#include "pipeline/color/local_tracker.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pipeline/imaging/orientation_histograms.h"
+
+namespace cgsr::color {
+namespace {
+
+using imaging::kGrid;
+using imaging::kGridArea;
+using imaging::RealGrid;
+
+constexpr int kShapeCell_px = 2;
+constexpr imaging::PatchSize kShapePatch{kGrid * kShapeCell_px, kGrid* kShapeCell_px};
+constexpr imaging::PatchSize kCellPatch{kGrid, kGrid};
+constexpr double kLeastInner = 0.3;  // of the box's side, however thin the box is
+// What follow_light believes: brighter or darker than that is a cut in the film or a covered lens, not a lamp.
+constexpr double kMostGain = 2.0;
+constexpr double kLeastGain = 0.4;
+
+/// A plane of bytes as a channel of the filter: without its mean, in units of 128 / gain grey levels.
+void to_channel(std::span<const std::uint8_t> bytes, float gain, RealGrid& channel) {
+  int sum = 0;
+  for (const std::uint8_t byte : bytes) sum += byte;
+  const float mean = static_cast<float>(sum) / static_cast<float>(bytes.size());
+  for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = (static_cast<float>(bytes[i]) - mean) * gain / 128.0F;
+}
+
+Light rgb_of(const imaging::Pyramid::Mean& mean) {
+  return imaging::rgb_of_yuv(mean.y, mean.u, mean.v);
+}
+
+}  // namespace
+
+LocalTracker::LocalTracker(const LocalParameters& parameters)
+    : parameters_(parameters),
+      shape_(parameters.correlation),
+      scale_(parameters.scale),
+      patch_({kColors_px, kColors_px}),
+      learned_({kColors_px, kColors_px}),
+      remembered_({kColors_px, kColors_px}),
+      relit_({kColors_px, kColors_px}),
+      luma_(kShapePatch.area()),
+      integral_(static_cast<std::size_t>(kColors_px + 1) * (kColors_px + 1)) {}
+
+Box LocalTracker::region_of(const Box& box) const {
+  const double width = box.width * reach_x_;
+  const double height = box.height * reach_y_;
+  return {box.x + 0.5 * (box.width - width), box.y + 0.5 * (box.height - height), width, height};
+}
+
+/// The box in pixels of the colour patch, each side shorter by `margin` mean sides.
+Box LocalTracker::object_in_patch(double margin) const {
+  const double width = kColors_px / reach_x_;
+  const double height = kColors_px / reach_y_;
+  const double cut = margin * 0.5 * (width + height);
+  const double inner_width = std::max(kLeastInner * width, width - cut);
+  const double inner_height = std::max(kLeastInner * height, height - cut);
+  return {0.5 * (kColors_px - inner_width), 0.5 * (kColors_px - inner_height), inner_width, inner_height};
+}
+
+void LocalTracker::take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const {
+  const Box region = region_of(box);
+  image.sample_luma(region, patch.size, patch.y);
+  image.sample_chroma(region, patch.size, patch.u, patch.v);
+}
+
+void LocalTracker::take_features(const imaging::Pyramid& image, const Box& box) {
+  const Box region = region_of(box);
+  image.sample_luma(region, kShapePatch, luma_);
+  std::array<float, std::size_t{imaging::kOrientations} * kGridArea> orientations;
+  imaging::orientation_histograms(luma_, kShapePatch, kShapeCell_px, orientations);
+  for (std::size_t k = 0; k < imaging::kOrientations; ++k) {
+    std::copy_n(orientations.begin() + static_cast<std::ptrdiff_t>(k * kGridArea), kGridArea, features_[k].begin());
+  }
+  std::array<std::uint8_t, kGridArea> y;
+  std::array<std::uint8_t, kGridArea> u;
+  std::array<std::uint8_t, kGridArea> v;
+  image.sample_luma(region, kCellPatch, y);
+  image.sample_chroma(region, kCellPatch, u, v);
+  to_channel(y, 1.0F, features_[9]);
+  to_channel(u, 2.0F, features_[10]);
+  to_channel(v, 2.0F, features_[11]);
+}
+
+void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
+  const double around = 0.5 * (box.width + box.height) * parameters_.padding;
+  reach_x_ = (box.width + around) / box.width;
+  reach_y_ = (box.height + around) / box.height;
+  take_features(image, box);
+  shape_.begin(features_, std::sqrt(kGrid / reach_x_ * kGrid / reach_y_));
+  scale_.begin(image, box);
+  take_colors(image, box, learned_);
+  colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+  remember(image, box);
+}
+
+void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
+  take_colors(image, box, patch_);
+  colors_.learn(patch_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), parameters_.color_rate);
+  take_features(image, box);
+  shape_.learn(features_);
+  scale_.learn(image, box);
+}
+
+LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box) {
+  return look_with(colors_, image, box);
+}
+
+LocalAnswer LocalTracker::look_under(const Light& gain, const imaging::Pyramid& image, const Box& box) {
+  relit_ = learned_;
+  relight(relit_, gain);
+  trial_colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+  return look_with(trial_colors_, image, box);
+}
+
+LocalAnswer LocalTracker::look_with(const ColorLikelihood& colors, const imaging::Pyramid& image, const Box& box) {
+  take_features(image, box);
+  RealGrid shape;
+  shape_.respond(features_, shape);
+  RealGrid merged;
+  take_colors(image, box, patch_);
+  score_colors(colors, merged);
+  const auto color = static_cast<float>(parameters_.color_share);
+  for (std::size_t i = 0; i < kGridArea; ++i) merged[i] = (1.0F - color) * shape[i] + color * merged[i];
+
+  const Peak peak = peak_of(merged);
+  LocalAnswer answer{box, peak.value, peak_of(shape).sharpness};
+  answer.box.x += (peak.x - 0.5 * kGrid) * box.width * reach_x_ / kGrid;
+  answer.box.y += (peak.y - 0.5 * kGrid) * box.height * reach_y_ / kGrid;
+  return answer;
+}
+
+/// The mean likelihood of the box's pixels, for every cell its centre may move to.
+void LocalTracker::score_colors(const ColorLikelihood& colors, RealGrid& score) {
+  constexpr int kRow = kColors_px + 1;
+  std::size_t at = 0;
+  for (int y = 0; y < kColors_px; ++y) {
+    const float* above = integral_.data() + y * kRow;
+    float* sums = integral_.data() + (y + 1) * kRow;
+    float row = 0.0F;
+    for (int x = 0; x < kColors_px; ++x, ++at) {
+      row += colors.of(patch_.y[at], patch_.u[at], patch_.v[at]);
+      sums[x + 1] = above[x + 1] + row;
+    }
+  }
+  const double width = kColors_px / reach_x_;
+  const double height = kColors_px / reach_y_;
+  const auto inverse_area = static_cast<float>(1.0 / (width * height));
+  const auto edges = [](double length) {
+    std::array<std::pair<int, int>, kGrid> spans;
+    for (int i = 0; i < kGrid; ++i) {
+      const double centre = static_cast<double>(kColors_px) / kGrid * i;
+      const auto bound = [](double edge) { return std::clamp(static_cast<int>(std::lround(edge)), 0, kColors_px); };
+      spans[static_cast<std::size_t>(i)] = {bound(centre - 0.5 * length), bound(centre + 0.5 * length)};
+    }
+    return spans;
+  };
+  const auto columns = edges(width);
+  const auto rows = edges(height);
+  for (std::size_t j = 0; j < kGrid; ++j) {
+    const float* top = integral_.data() + rows[j].first * kRow;
+    const float* bottom = integral_.data() + rows[j].second * kRow;
+    for (std::size_t i = 0; i < kGrid; ++i) {
+      const auto [left, right] = columns[i];
+      score[j * kGrid + i] = (bottom[right] - bottom[left] - top[right] + top[left]) * inverse_area;
+    }
+  }
+}
+
+void LocalTracker::remember(const imaging::Pyramid& image, const Box& box) {
+  take_colors(image, box, remembered_);
+  remembered_mean_ = image.mean();
+}
+
+void LocalTracker::follow_light(const imaging::Pyramid& image) {
+  const Light before = rgb_of(remembered_mean_);
+  const Light now = rgb_of(image.mean());
+  constexpr double kDark = 1.0 / 255.0;
+  const Light gain{(now.r + kDark) / (before.r + kDark), (now.g + kDark) / (before.g + kDark),
+                   (now.b + kDark) / (before.b + kDark)};
+  const double largest = std::max({gain.r, gain.g, gain.b});
+  const double least = std::min({gain.r, gain.g, gain.b});
+  if (std::max(std::log(largest), -std::log(least)) <= parameters_.light_step) return;
+  if (largest > kMostGain || least < kLeastGain) return;
+  relit_ = remembered_;
+  relight(relit_, gain);
+  colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), parameters_.light_rate);
+}
+
+}  // namespace cgsr::color
