@@ -8,6 +8,11 @@ function(cgsr_library name)
   target_link_libraries(cgsr_${name} PUBLIC tl::expected fmt::fmt ${ARG_DEPENDS})
 endfunction()
 
+# cgsr_kernels(sources…): loops over arrays that the compiler may vectorise in the release; everything else stays at -O2.
+function(cgsr_kernels)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>")
+endfunction()
+
 # cgsr_test(NAME sources… DEPENDS targets… [LABELS …]): one test program per folder. Each TEST() is a ctest of its own; suites whose
 # name ends in Property, Contract, Stress, Alloc, Fault, Replay or Golden carry that word as a label too.
 function(cgsr_test name)

@@ -110,8 +110,10 @@ class TrackRun {
 
   /// The image that was learned from: its box is known. Counts as image number one of the output, but never as an answer.
   Result<void> begin_with(const ImageLease& image, const Box& box) {
-    tracker_.place(box);
-    color::TrackedObject known{true, box, 0.0, {}};
+    const auto& view = image.view();
+    const int factor = tracker_.reduction(view.width_px, view.height_px);
+    if (imaging::reduce(view, factor, tracker_.labels(), reduced_)) tracker_.place(view, reduced_, box);
+    color::TrackedObject known{true, box, 0.0, {}, {}};
     if (!model_.samples.empty()) known.light = model_.samples.front().light;
     return keep(image, known);
   }

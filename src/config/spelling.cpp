@@ -10,8 +10,6 @@ namespace cgsr::config {
 
 namespace {
 
-constexpr std::size_t kLongestWord = 64;  // the distance costs the product of the lengths
-
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -32,7 +30,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string_view nearest(std::string_view typed, const std::vector<std::string_view>& words) {
-  if (typed.size() > kLongestWord) return {};
   std::string_view best;
   std::size_t fewest = typed.size();
   for (const std::string_view word : words) {
