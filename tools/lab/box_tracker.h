@@ -4,22 +4,20 @@
 #include <optional>
 #include <string>
 
+#include "pipeline/color/light.h"
 #include "platform/box.h"
 #include "platform/error.h"
 #include "tools/lab/image.h"
 
 namespace cgsr::lab {
 
-/// The light (r, g, b) under which a tracker recognised its object, relative to what it assumed at learning.
-struct Light {
-  double r = 0.0;
-  double g = 0.0;
-  double b = 0.0;
-};
+/// Of a scene, per channel, relative to what Alg. 3.1 assumed at learning.
+using Light = color::Light;
 
 struct Sighting {
   std::optional<Box> box;      ///< empty: not found
-  std::optional<Light> light;  ///< empty: not found, or the tracker estimates none
+  std::optional<Light> light;  ///< of the grid, under which the object was recognised; empty: not found, or no estimate
+  std::optional<Light> exact_light;  ///< the same between the grid's lights
 };
 
 /// Whatever learns an object from one box of one image and then says where it is. Ours and the peers behind one face, so that a

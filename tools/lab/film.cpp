@@ -53,9 +53,9 @@ Result<Film> open_film(const std::filesystem::path& folder, std::optional<cv::Si
     if (box) box = Box{box->x * sx, box->y * sy, box->width * sx, box->height * sy};
   }
   const auto load = [files, wanted](int i) {
-    return load_image(files[static_cast<std::size_t>(i)]).map([&](Image image) {
-      return image.bgr.size() == wanted ? image : scaled_image(image, wanted);
-    });
+    auto image = load_image(files[static_cast<std::size_t>(i)]);
+    if (image && image->bgr.size() != wanted) image = scaled_image(*image, wanted);
+    return image;
   };
   return Film{folder.filename().string(), load, std::move(*truth)};
 }

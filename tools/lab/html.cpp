@@ -37,11 +37,6 @@ std::string escaped(std::string_view text) {
   return safe;
 }
 
-/// What adding up ticks leaves of zero is zero.
-double round_zero(double value) {
-  return std::abs(value) < 1e-12 ? 0.0 : value;
-}
-
 /// A straight scale from values to pixels, with about five round ticks.
 struct Axis {
   double low, high, from_px, to_px;
@@ -53,8 +48,8 @@ struct Axis {
     const double rough = (high - low) / 5 / power;
     const double step = power * (rough < 1.5 ? 1 : rough < 3.5 ? 2 : rough < 7.5 ? 5 : 10);
     std::vector<double> values;
-    for (double value = std::ceil(low / step - 1e-9) * step; value <= high + 1e-9 * step; value += step)
-      values.push_back(value);
+    const auto first = static_cast<int>(std::ceil(low / step - 1e-9));
+    for (int i = first; i * step <= high + 1e-9 * step; ++i) values.push_back(i * step);
     return values;
   }
 };
@@ -82,12 +77,12 @@ std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
   for (double value : x.ticks()) {
     svg += fmt::format(
         R"(<line x1="{0:.1f}" y1="{1}" x2="{0:.1f}" y2="{2}" stroke="#eee"/><text x="{0:.1f}" y="{3}" text-anchor="middle">{4:g}</text>)",
-        x.px(value), kTop, kHeight - kBottom, kHeight - kBottom + 16, round_zero(value));
+        x.px(value), kTop, kHeight - kBottom, kHeight - kBottom + 16, value);
   }
   for (double value : y.ticks()) {
     svg += fmt::format(
         R"(<line x1="{1}" y1="{0:.1f}" x2="{2}" y2="{0:.1f}" stroke="#eee"/><text x="{3}" y="{4:.1f}" text-anchor="end">{5:g}</text>)",
-        y.px(value), kLeft, kWidth - kRight, kLeft - 6, y.px(value) + 4, round_zero(value));
+        y.px(value), kLeft, kWidth - kRight, kLeft - 6, y.px(value) + 4, value);
   }
   svg += fmt::format(R"(<path d="M{0},{1}V{2}H{3}" fill="none" stroke="#444"/>)", kLeft, kTop, kHeight - kBottom,
                      kWidth - kRight);
@@ -106,7 +101,7 @@ std::string drawn(const Curve& curve, std::size_t number, const Axis& x, const A
     const Interval band = point.interval.value_or(Interval{point.y, point.y});
     line += fmt::format("{:.1f},{:.1f} ", x.px(point.x), y.px(point.y));
     band_up += fmt::format("{:.1f},{:.1f} ", x.px(point.x), y.px(band.high));
-    band_back = fmt::format("{:.1f},{:.1f} ", x.px(point.x), y.px(band.low)) + band_back;
+    band_back.insert(0, fmt::format("{:.1f},{:.1f} ", x.px(point.x), y.px(band.low)));
   }
   std::string svg = fmt::format(R"(<polygon points="{}{}" fill="{}" opacity=".15"/>)", band_up, band_back, color);
   svg += fmt::format(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="2"/>)", line, color);

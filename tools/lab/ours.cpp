@@ -21,16 +21,16 @@ class OurTracker final : public BoxTracker {
     if (!tracker) return tl::unexpected(tracker.error());
     tracker_ = std::move(*tracker);
     reduced_.emplace(image.bgr.cols, image.bgr.rows);
-    if (start_ == Start::kWhereLearned) tracker_->place(box);
+    if (start_ == Start::kAnywhere) return {};
+    if (!reduce(image.view())) return fail("the image is none that can be reduced");
+    tracker_->place(image.view(), *reduced_, box);
     return {};
   }
 
   Sighting track(const Image& image) override {
     const ImageView view = image.view();
     count_stage_begin();
-    const bool reduced =
-        imaging::reduce(view, tracker_->reduction(view.width_px, view.height_px), tracker_->labels(), *reduced_)
-            .has_value();
+    const bool reduced = reduce(view);
     count_stage_end("labels");
     if (!reduced) return {};
     UnlimitedBudget budget;
@@ -38,10 +38,15 @@ class OurTracker final : public BoxTracker {
     const color::TrackedObject object = tracker_->track(view, *reduced_, budget);
     count_stage_end("track");
     if (!object.found) return {};
-    return {object.box, Light{object.light.r, object.light.g, object.light.b}};
+    return {object.box, object.light, object.exact_light};
   }
 
  private:
+  bool reduce(const ImageView& view) {
+    const int factor = tracker_->reduction(view.width_px, view.height_px);
+    return imaging::reduce(view, factor, tracker_->labels(), *reduced_).has_value();
+  }
+
   config::Color configuration_;
   Start start_;
   std::optional<color::Tracker> tracker_;

@@ -26,7 +26,7 @@ Light random_light(double low, double high, Random& random) {
 /// What trials with the object in view gave.
 struct Tally {
   std::vector<double> precision, recall, iou;
-  std::vector<double> light_error, constant_error;  // mean over the channels, where found
+  std::vector<double> light_error, exact_error, constant_error;  // mean over the channels, where found
   int found = 0, nearest = 0, constant_nearest = 0;
 };
 
@@ -62,6 +62,7 @@ void book(const Sighting& seen, const Box& truth, const Light& light, Tally& tal
   tally.nearest += same_grid_light(*seen.light, light);
   tally.constant_nearest += same_grid_light(kConstant, light);
   tally.light_error.push_back(mean_error(*seen.light, light));
+  tally.exact_error.push_back(mean_error(seen.exact_light.value_or(*seen.light), light));
   tally.constant_error.push_back(mean_error(kConstant, light));
 }
 
@@ -94,6 +95,8 @@ void add_light_rows(const Tally& tally, std::uint64_t seed, Report& report) {
   const auto images = static_cast<int>(tally.light_error.size());
   report.rows.push_back(share_row("light estimate", "nearest grid light", tally.nearest, images));
   report.rows.push_back(mean_row("light estimate", "error per channel", "", tally.light_error, seed));
+  report.rows.push_back(
+      mean_row("light estimate, not bound to the grid", "error per channel", "", tally.exact_error, seed));
   report.rows.push_back(share_row("always answering 0.8", "nearest grid light", tally.constant_nearest, images));
   report.rows.push_back(mean_row("always answering 0.8", "error per channel", "", tally.constant_error, seed));
 }
