@@ -52,14 +52,14 @@ Candidate best_light(const Similarity& similarity, const std::vector<int>& count
 
 }  // namespace
 
-tl::expected<SearchResult, SearchFailure> exhaustive_search(const ColorModel& model, const SearchParameters& parameters,
-                                                            const imaging::ReducedImage& image,
-                                                            const SearchRequest& request) {
-  const auto grid = window_grid(parameters, image, request);
+ExhaustiveSearch::ExhaustiveSearch(const ColorModel& model, const SearchParameters& parameters)
+    : parameters_(parameters), labels_(labels_of(model)), similarity_(model, parameters, labels_) {}
+
+tl::expected<SearchResult, SearchFailure> ExhaustiveSearch::search(const imaging::ReducedImage& image,
+                                                                   const SearchRequest& request) const {
+  const auto grid = window_grid(parameters_, image, request);
   if (!grid) return tl::unexpected(grid.error());
-  const Labels labels = labels_of(model);
-  const Similarity similarity(model, parameters, labels);
-  const int least = least_units(parameters.divergence, request.max_divergence);
+  const int least = least_units(parameters_.divergence, request.max_divergence);
 
   SearchResult result;
   std::vector<Candidate> candidates;
@@ -68,7 +68,7 @@ tl::expected<SearchResult, SearchFailure> exhaustive_search(const ColorModel& mo
       for (int x = grid->left; x < grid->left + grid->columns(size); ++x) {
         const GridWindow window{x, y, size};
         Candidate candidate =
-            best_light(similarity, histogram_of(image, *grid, window, labels.count()), grid->pixels(size));
+            best_light(similarity_, histogram_of(image, *grid, window, labels_.count()), grid->pixels(size));
         candidate.window = window;
         candidate.rank = candidate.units;
         if (request.prior) {
@@ -93,7 +93,7 @@ tl::expected<SearchResult, SearchFailure> exhaustive_search(const ColorModel& mo
     if (!free) continue;
     taken.push_back(candidate.window);
     result.matches[static_cast<std::size_t>(result.count++)] = {
-        grid->box(candidate.window), divergence_of_units(parameters.divergence, candidate.units), candidate.light,
+        grid->box(candidate.window), divergence_of_units(parameters_.divergence, candidate.units), candidate.light,
         candidate.window.size};
   }
   return result;

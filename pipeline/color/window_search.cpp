@@ -60,7 +60,8 @@ WindowSearch::State::State(const ColorModel& model, const SearchParameters& p, i
       counts(labels.count(), max_label_pixels, max_side),
       histogram(labels.count()),
       capacity(static_cast<std::size_t>(max_label_pixels) * static_cast<std::size_t>(p.sizes)) {
-  queue.reserve(capacity);
+  queue.assign(capacity, SearchNode(0, 0, 0, 0, 0, 0));  // touches every page now, not while images come
+  queue.clear();
 }
 
 tl::expected<void, SearchFailure> WindowSearch::State::begin(const imaging::ReducedImage& image,
