@@ -6,7 +6,8 @@ namespace cgsr {
 
 Decision VisionLoop::on_image(const ImageLease& image) {
   const auto& view = runner_.run(decode_, image);
-  const auto& object = runner_.run(track_, image, view);  // chapter 3
+  const auto& matches = runner_.run(search_, view);  // chapter 3, Alg. 3.2
+  const auto& object = runner_.run(track_, image, view, matches);
   return runner_.run(decide_, image, object);
 }
 
@@ -18,8 +19,9 @@ VisionLoop::VisionLoop(runtime::StageRunner& runner, color::Tracker tracker, beh
       camera_(camera),
       reduced_(max_width_px, max_height_px),
       decode_("decode", [this](const ImageLease& image) { return decode(image); }),
-      track_("track", [this](WorkBudget& budget, const ImageLease& image,
-                             const View& view) { return track(budget, image, view); }),
+      search_("search", [this](WorkBudget& budget, const View& view) { return search(budget, view); }),
+      track_("track", [this](WorkBudget& budget, const ImageLease& image, const View& view,
+                             const color::SearchResult& matches) { return track(budget, image, view, matches); }),
       decide_("decide", [this](const ImageLease& image, const runtime::Aged<color::TrackedObject>& object) {
         return decide(image, object);
       }) {}
@@ -31,9 +33,15 @@ VisionLoop::View VisionLoop::decode(const ImageLease& image) {
   return {&reduced_};
 }
 
-color::TrackedObject VisionLoop::track(WorkBudget& budget, const ImageLease& image, const View& view) {
+color::SearchResult VisionLoop::search(WorkBudget& budget, const View& view) {
   if (view.reduced == nullptr) return {};
-  return tracker_.track(image.view(), *view.reduced, budget);
+  return tracker_.search(*view.reduced, budget);
+}
+
+color::TrackedObject VisionLoop::track(WorkBudget& budget, const ImageLease& image, const View& view,
+                                       const color::SearchResult& matches) {
+  if (view.reduced == nullptr) return {};
+  return tracker_.track(image.view(), *view.reduced, matches, budget);
 }
 
 Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object) {

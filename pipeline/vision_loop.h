@@ -47,7 +47,7 @@ class VisionLoop {
   VisionLoop& operator=(const VisionLoop&) = delete;
 
   /// Gives every stage its row in the runner's schedule; to be called once, before the first image.
-  Result<void> bind() { return runner_.bind(decode_, track_, decide_); }
+  Result<void> bind() { return runner_.bind(decode_, search_, track_, decide_); }
 
   /// Image in, decision out. Valid between the runner's begin_frame and end_frame.
   Decision on_image(const ImageLease& image);
@@ -59,7 +59,9 @@ class VisionLoop {
   };
 
   View decode(const ImageLease& image);
-  color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view);
+  color::SearchResult search(WorkBudget& budget, const View& view);
+  color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view,
+                             const color::SearchResult& matches);
   Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object);
 
   template <class Output, class... Inputs>
@@ -73,7 +75,8 @@ class VisionLoop {
   MonoTime last_image_{};
 
   StageOf<View, const ImageLease&> decode_;
-  StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&> track_;
+  StageOf<color::SearchResult, WorkBudget&, const View&> search_;
+  StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&, const color::SearchResult&> track_;
   StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&> decide_;
 };
 

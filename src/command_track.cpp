@@ -123,12 +123,15 @@ class TrackRun {
     const auto& view = image.view();
     const auto outcome =
         imaging::reduce(view, tracker_.reduction(view.width_px, view.height_px), tracker_.labels(), reduced_);
-    count_stage_end("labels");
+    count_stage_end("decode");
     color::TrackedObject object;
     if (outcome) {
       UnlimitedBudget unlimited;
       count_stage_begin();
-      object = tracker_.track(view, reduced_, unlimited);
+      const color::SearchResult matches = tracker_.search(reduced_, unlimited);
+      count_stage_end("search");
+      count_stage_begin();
+      object = tracker_.track(view, reduced_, matches, unlimited);
       count_stage_end("track");
     }
     count_image_end();

@@ -58,8 +58,8 @@ struct Tracker::State {
 
   void learn_from_model();
   SearchResult search_all(const imaging::ReducedImage& reduced, WorkBudget& budget);
-  TrackedObject track_plain(const imaging::ReducedImage& reduced, WorkBudget& budget);
-  TrackedObject track_full(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  TrackedObject track_plain(const SearchResult& matches) const;
+  TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
   Place look(const imaging::ReducedImage& reduced, const Box& box);
   [[nodiscard]] bool is_weak(const Place& place) const;
   [[nodiscard]] bool ends_loss(const Place& place) const;
@@ -109,18 +109,17 @@ SearchResult Tracker::State::search_all(const imaging::ReducedImage& reduced, Wo
   return search.search(reduced, request).value_or(SearchResult{});
 }
 
-TrackedObject Tracker::State::track_plain(const imaging::ReducedImage& reduced, WorkBudget& budget) {
-  const SearchResult result = search_all(reduced, budget);
-  if (result.count == 0) return {};
-  const Match& best = result.matches.front();
+TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
+  if (matches.count == 0) return {};
+  const Match& best = matches.matches.front();
   const Light light = model.lights[static_cast<std::size_t>(best.light)];
   return {true, best.box, best.divergence, light, light};
 }
 
 /// The whole image is searched in any case. Where the object was, the local tracker says how it moved; what it says is doubted by three
 /// measures together, and then the search's best windows stand against it: a prior, not a cage.
-TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, WorkBudget& budget) {
-  const SearchResult matches = search_all(reduced, budget);
+TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
+                                         WorkBudget& budget) {
   Place place;
   bool sure = false;
   if (located) {
@@ -272,11 +271,16 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.weak_images = 0;
 }
 
-TrackedObject Tracker::track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget) {
+SearchResult Tracker::search(const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  return state_->search_all(reduced, budget);
+}
+
+TrackedObject Tracker::track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,
+                             WorkBudget& budget) {
   State& s = *state_;
-  if (s.parameters.mode == TrackMode::kPlain) return s.track_plain(reduced, budget);
+  if (s.parameters.mode == TrackMode::kPlain) return s.track_plain(matches);
   s.pyramid.build(image);
-  return s.track_full(reduced, budget);
+  return s.track_full(reduced, matches, budget);
 }
 
 }  // namespace cgsr::color

@@ -114,9 +114,19 @@ class Tracker {
   /// Says where the object is known to be, as in the image that it was learned from.
   void place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box);
 
-  /// One image. \param image  as the camera sent it. \param reduced  the same, reduced with labels() and reduction().
-  /// \param budget  asked once per unit of the search and once per closer look.
-  TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget);
+  /// The first half of an image's work, Alg. 3.2: the windows of the whole image that are nearest to the learned histograms, best first.
+  /// \param reduced  the image, reduced with labels() and reduction(). \param budget  asked once per unit of the search.
+  SearchResult search(const imaging::ReducedImage& reduced, WorkBudget& budget);
+
+  /// The second half: which of them it is, or what became of the object since the last image, and the box that fits.
+  /// \param image  as the camera sent it. \param matches  of search(). \param budget  asked once per closer look.
+  TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,
+                      WorkBudget& budget);
+
+  /// Both halves.
+  TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget) {
+    return track(image, reduced, search(reduced, budget), budget);
+  }
 
  private:
   struct State;

@@ -22,13 +22,14 @@ std::array<double, 3> hsv_of(const Rgb& c) {
   return {sector < 6.0 ? sector / 6.0 : 0.0, chroma / value, value};
 }
 
-std::array<double, 3> channels_of(ColorSpace space, const Rgb& c) {
-  switch (space) {
+std::array<double, 3> channels_of(const ColorBins& bins, const Rgb& c) {
+  switch (bins.space) {
     case ColorSpace::kHsv:
       return hsv_of(c);
     case ColorSpace::kYuv: {
       const auto yuv = yuv_of_rgb(c);
-      return {(yuv.y - 16.0) / 219.0, (yuv.u - 16.0) / 224.0, (yuv.v - 16.0) / 224.0};
+      const double half_bin = bins.per_channel % 2 == 0 ? 0.5 / bins.per_channel : 0.0;
+      return {(yuv.y - 16.0) / 219.0, (yuv.u - 16.0) / 224.0 + half_bin, (yuv.v - 16.0) / 224.0 + half_bin};
     }
     case ColorSpace::kRgb:
       break;
@@ -41,7 +42,7 @@ std::array<double, 3> channels_of(ColorSpace space, const Rgb& c) {
 int bin_of(const ColorBins& bins, const Rgb& rgb) {
   const Rgb inside{std::clamp(rgb.r, 0.0, 1.0), std::clamp(rgb.g, 0.0, 1.0), std::clamp(rgb.b, 0.0, 1.0)};
   int bin = 0;
-  for (const double channel : channels_of(bins.space, inside)) {
+  for (const double channel : channels_of(bins, inside)) {
     const int level = std::clamp(static_cast<int>(channel * bins.per_channel), 0, bins.per_channel - 1);
     bin = bin * bins.per_channel + level;
   }

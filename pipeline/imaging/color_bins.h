@@ -32,7 +32,8 @@ struct ColorBins {
 };
 
 /// \return the bin of a colour, in 0..bins.count() - 1; the first channel (R, H or Y) counts most. A channel that is exactly 1
-///         belongs to the last bin. Hue is cyclic and a grey has hue 0. Channels outside [0, 1] are cut off first.
+///         belongs to the last bin. Hue is cyclic and a grey has hue 0.
+///         Neutral U and V lie in the middle of a bin: on the border between two, every grey would flicker. Channels outside [0, 1] are cut off first.
 int bin_of(const ColorBins& bins, const Rgb& rgb);
 
 }  // namespace cgsr::imaging
