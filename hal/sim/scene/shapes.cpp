@@ -24,7 +24,23 @@ void add_face(Mesh& mesh, const Vector3d& centre, const Vector3d& right, const V
   mesh.add_polygon(corners, uv);
 }
 
-// A grid of corners, (rows + 1) x (columns + 1), each quad one polygon; `columns` runs counter-clockwise seen from above.
+constexpr int kAround = 192;  // sagitta of a 2 cm circle: 3 um; of a 10 cm one: 13 um
+
+void add_cap(Mesh& mesh, double radius_m, double z_m, bool up) {
+  std::vector<Vector3f> corners;
+  std::vector<Vector2f> uv;
+  for (int i = 0; i < kAround; ++i) {
+    const double a = 2.0 * kPi * (up ? i : -i) / kAround;
+    const double x = radius_m * cosine(a);
+    const double y = radius_m * sine(a);
+    corners.emplace_back(Vector3d(x, y, z_m).cast<float>());
+    uv.emplace_back(static_cast<float>(x), static_cast<float>(y));
+  }
+  mesh.add_polygon(corners, uv);
+}
+
+}  // namespace
+
 void connect_grid(Mesh& mesh, int rows, int columns) {
   const auto corner = [columns](int row, int column) {
     return static_cast<std::uint32_t>(row * (columns + 1) + column);
@@ -43,23 +59,6 @@ void connect_grid(Mesh& mesh, int rows, int columns) {
   }
   mesh.smooth = true;
 }
-
-constexpr int kAround = 192;  // sagitta of a 2 cm circle: 3 um; of a 10 cm one: 13 um
-
-void add_cap(Mesh& mesh, double radius_m, double z_m, bool up) {
-  std::vector<Vector3f> corners;
-  std::vector<Vector2f> uv;
-  for (int i = 0; i < kAround; ++i) {
-    const double a = 2.0 * kPi * (up ? i : -i) / kAround;
-    const double x = radius_m * cosine(a);
-    const double y = radius_m * sine(a);
-    corners.emplace_back(Vector3d(x, y, z_m).cast<float>());
-    uv.emplace_back(static_cast<float>(x), static_cast<float>(y));
-  }
-  mesh.add_polygon(corners, uv);
-}
-
-}  // namespace
 
 Mesh make_rectangle(double width_m, double depth_m) {
   Mesh mesh;

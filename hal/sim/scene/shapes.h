@@ -28,6 +28,10 @@ Mesh make_ellipsoid(const Eigen::Vector3d& semi_axes_m, int around = 48, int alo
 /// A flat disc about the origin facing +z.
 Mesh make_disc(double radius_m);
 
+/// Joins corners that were laid down as a grid of (rows + 1) x (columns + 1), row by row upwards and counter-clockwise seen from above,
+/// to a curved surface; each quad is one polygon.
+void connect_grid(Mesh& mesh, int rows, int columns);
+
 /// A tube of varying elliptic section along z, closed at both ends: limbs and torsos. Stations rise in z.
 struct Station {
   double z_m;
