@@ -10,9 +10,14 @@ std::uint8_t byte_of(double value) {
   return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
 }
 
-bool holds(const Box& box, double x, double y) {
-  return x > box.x && x < box.x + box.width && y > box.y && y < box.y + box.height;
-}
+/// The pixels whose centres lie within a length.
+struct PixelSpan {
+  int first;
+  int end;
+  PixelSpan(double from, double length)
+      : first(static_cast<int>(std::floor(from + 0.5))), end(static_cast<int>(std::ceil(from + length - 0.5))) {}
+  [[nodiscard]] bool holds(int pixel) const { return pixel >= first && pixel < end; }
+};
 
 }  // namespace
 
@@ -32,19 +37,20 @@ ColorLikelihood::ColorLikelihood()
     : object_(kBins), surroundings_(kBins), likelihood_(kBins, 0.5F), counted_in_(kBins), counted_out_(kBins) {}
 
 void ColorLikelihood::learn(const ColorPatch& patch, const Box& inside, const Box& outside, double rate) {
-  std::fill(counted_in_.begin(), counted_in_.end(), 0.0F);
-  std::fill(counted_out_.begin(), counted_out_.end(), 0.0F);
   int count_in = 0;
   int count_out = 0;
+  const PixelSpan columns_in(inside.x, inside.width);
+  const PixelSpan columns_out(outside.x, outside.width);
+  const PixelSpan rows_in(inside.y, inside.height);
+  const PixelSpan rows_out(outside.y, outside.height);
   std::size_t at = 0;
   for (int y = 0; y < patch.size.height_px; ++y) {
     for (int x = 0; x < patch.size.width_px; ++x, ++at) {
-      const std::size_t bin = bin_of(patch.y[at], patch.u[at], patch.v[at]);
-      if (holds(inside, x + 0.5, y + 0.5)) {
-        counted_in_[bin] += 1.0F;
+      if (rows_in.holds(y) && columns_in.holds(x)) {
+        counted_in_[bin_of(patch.y[at], patch.u[at], patch.v[at])] += 1.0F;
         ++count_in;
-      } else if (!holds(outside, x + 0.5, y + 0.5)) {
-        counted_out_[bin] += 1.0F;
+      } else if (!rows_out.holds(y) || !columns_out.holds(x)) {
+        counted_out_[bin_of(patch.y[at], patch.u[at], patch.v[at])] += 1.0F;
         ++count_out;
       }
     }
@@ -59,6 +65,11 @@ void ColorLikelihood::learn(const ColorPatch& patch, const Box& inside, const Bo
     object_[i] = object;
     surroundings_[i] = around;
     likelihood_[i] = (object + 0.5F * kUnseen) / (object + around + kUnseen);
+  }
+  for (std::size_t i = 0; i < patch.y.size(); ++i) {  // cheaper than clearing all bins
+    const std::size_t bin = bin_of(patch.y[i], patch.u[i], patch.v[i]);
+    counted_in_[bin] = 0.0F;
+    counted_out_[bin] = 0.0F;
   }
 }
 

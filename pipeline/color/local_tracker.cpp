@@ -21,12 +21,23 @@ constexpr double kLeastInner = 0.3;  // of the box's side, however thin the box 
 constexpr double kMostGain = 2.0;
 constexpr double kLeastGain = 0.4;
 
-/// A plane of bytes as a channel of the filter: without its mean, in units of 128 / gain grey levels.
+/// A plane of 64x64 bytes as a channel of 32x32 cells: 2x2 means, without the mean of all, in units of 128 / gain grey levels.
 void to_channel(std::span<const std::uint8_t> bytes, float gain, RealGrid& channel) {
-  int sum = 0;
-  for (const std::uint8_t byte : bytes) sum += byte;
-  const float mean = static_cast<float>(sum) / static_cast<float>(bytes.size());
-  for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = (static_cast<float>(bytes[i]) - mean) * gain / 128.0F;
+  constexpr std::size_t kRow = 2 * kGrid;
+  int total = 0;
+  std::array<int, kGridArea> sums;
+  for (std::size_t y = 0; y < kGrid; ++y) {
+    const std::uint8_t* top = bytes.data() + 2 * y * kRow;
+    const std::uint8_t* bottom = top + kRow;
+    for (std::size_t x = 0; x < kGrid; ++x) {
+      const int sum = top[2 * x] + top[2 * x + 1] + bottom[2 * x] + bottom[2 * x + 1];
+      sums[y * kGrid + x] = sum;
+      total += sum;
+    }
+  }
+  const float mean = static_cast<float>(total) / kGridArea;
+  for (std::size_t i = 0; i < kGridArea; ++i)
+    channel[i] = (static_cast<float>(sums[i]) - mean) * gain / (4.0F * 128.0F);
 }
 
 Light rgb_of(const imaging::Pyramid::Mean& mean) {
@@ -39,12 +50,11 @@ LocalTracker::LocalTracker(const LocalParameters& parameters)
     : parameters_(parameters),
       shape_(parameters.correlation),
       scale_(parameters.scale),
-      patch_({kColors_px, kColors_px}),
-      learned_({kColors_px, kColors_px}),
-      remembered_({kColors_px, kColors_px}),
-      relit_({kColors_px, kColors_px}),
-      luma_(kShapePatch.area()),
-      integral_(static_cast<std::size_t>(kColors_px + 1) * (kColors_px + 1)) {}
+      patch_({kPatch_px, kPatch_px}),
+      learned_({kPatch_px, kPatch_px}),
+      remembered_({kPatch_px, kPatch_px}),
+      relit_({kPatch_px, kPatch_px}),
+      integral_(static_cast<std::size_t>(kPatch_px + 1) * (kPatch_px + 1)) {}
 
 Box LocalTracker::region_of(const Box& box) const {
   const double width = box.width * reach_x_;
@@ -54,12 +64,12 @@ Box LocalTracker::region_of(const Box& box) const {
 
 /// The box in pixels of the colour patch, each side shorter by `margin` mean sides.
 Box LocalTracker::object_in_patch(double margin) const {
-  const double width = kColors_px / reach_x_;
-  const double height = kColors_px / reach_y_;
+  const double width = kPatch_px / reach_x_;
+  const double height = kPatch_px / reach_y_;
   const double cut = margin * 0.5 * (width + height);
   const double inner_width = std::max(kLeastInner * width, width - cut);
   const double inner_height = std::max(kLeastInner * height, height - cut);
-  return {0.5 * (kColors_px - inner_width), 0.5 * (kColors_px - inner_height), inner_width, inner_height};
+  return {0.5 * (kPatch_px - inner_width), 0.5 * (kPatch_px - inner_height), inner_width, inner_height};
 }
 
 void LocalTracker::take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const {
@@ -68,32 +78,25 @@ void LocalTracker::take_colors(const imaging::Pyramid& image, const Box& box, Co
   image.sample_chroma(region, patch.size, patch.u, patch.v);
 }
 
-void LocalTracker::take_features(const imaging::Pyramid& image, const Box& box) {
-  const Box region = region_of(box);
-  image.sample_luma(region, kShapePatch, luma_);
+void LocalTracker::take_features(const ColorPatch& patch) {
   std::array<float, std::size_t{imaging::kOrientations} * kGridArea> orientations;
-  imaging::orientation_histograms(luma_, kShapePatch, kShapeCell_px, orientations);
+  imaging::orientation_histograms(patch.y, patch.size, kShapeCell_px, orientations);
   for (std::size_t k = 0; k < imaging::kOrientations; ++k) {
     std::copy_n(orientations.begin() + static_cast<std::ptrdiff_t>(k * kGridArea), kGridArea, features_[k].begin());
   }
-  std::array<std::uint8_t, kGridArea> y;
-  std::array<std::uint8_t, kGridArea> u;
-  std::array<std::uint8_t, kGridArea> v;
-  image.sample_luma(region, kCellPatch, y);
-  image.sample_chroma(region, kCellPatch, u, v);
-  to_channel(y, 1.0F, features_[9]);
-  to_channel(u, 2.0F, features_[10]);
-  to_channel(v, 2.0F, features_[11]);
+  to_channel(patch.y, 1.0F, features_[9]);
+  to_channel(patch.u, 2.0F, features_[10]);
+  to_channel(patch.v, 2.0F, features_[11]);
 }
 
 void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
   const double around = 0.5 * (box.width + box.height) * parameters_.padding;
   reach_x_ = (box.width + around) / box.width;
   reach_y_ = (box.height + around) / box.height;
-  take_features(image, box);
+  take_colors(image, box, learned_);
+  take_features(learned_);
   shape_.begin(features_, std::sqrt(kGrid / reach_x_ * kGrid / reach_y_));
   scale_.begin(image, box);
-  take_colors(image, box, learned_);
   colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
   remember(image, box);
 }
@@ -101,7 +104,7 @@ void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
 void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
   take_colors(image, box, patch_);
   colors_.learn(patch_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), parameters_.color_rate);
-  take_features(image, box);
+  take_features(patch_);
   shape_.learn(features_);
   scale_.learn(image, box);
 }
@@ -118,11 +121,11 @@ LocalAnswer LocalTracker::look_under(const Light& gain, const imaging::Pyramid& 
 }
 
 LocalAnswer LocalTracker::look_with(const ColorLikelihood& colors, const imaging::Pyramid& image, const Box& box) {
-  take_features(image, box);
+  take_colors(image, box, patch_);
+  take_features(patch_);
   RealGrid shape;
   shape_.respond(features_, shape);
   RealGrid merged;
-  take_colors(image, box, patch_);
   score_colors(colors, merged);
   const auto color = static_cast<float>(parameters_.color_share);
   for (std::size_t i = 0; i < kGridArea; ++i) merged[i] = (1.0F - color) * shape[i] + color * merged[i];
@@ -136,25 +139,25 @@ LocalAnswer LocalTracker::look_with(const ColorLikelihood& colors, const imaging
 
 /// The mean likelihood of the box's pixels, for every cell its centre may move to.
 void LocalTracker::score_colors(const ColorLikelihood& colors, RealGrid& score) {
-  constexpr int kRow = kColors_px + 1;
+  constexpr int kRow = kPatch_px + 1;
   std::size_t at = 0;
-  for (int y = 0; y < kColors_px; ++y) {
+  for (int y = 0; y < kPatch_px; ++y) {
     const float* above = integral_.data() + y * kRow;
     float* sums = integral_.data() + (y + 1) * kRow;
     float row = 0.0F;
-    for (int x = 0; x < kColors_px; ++x, ++at) {
+    for (int x = 0; x < kPatch_px; ++x, ++at) {
       row += colors.of(patch_.y[at], patch_.u[at], patch_.v[at]);
       sums[x + 1] = above[x + 1] + row;
     }
   }
-  const double width = kColors_px / reach_x_;
-  const double height = kColors_px / reach_y_;
+  const double width = kPatch_px / reach_x_;
+  const double height = kPatch_px / reach_y_;
   const auto inverse_area = static_cast<float>(1.0 / (width * height));
   const auto edges = [](double length) {
     std::array<std::pair<int, int>, kGrid> spans;
     for (int i = 0; i < kGrid; ++i) {
-      const double centre = static_cast<double>(kColors_px) / kGrid * i;
-      const auto bound = [](double edge) { return std::clamp(static_cast<int>(std::lround(edge)), 0, kColors_px); };
+      const double centre = static_cast<double>(kPatch_px) / kGrid * i;
+      const auto bound = [](double edge) { return std::clamp(static_cast<int>(std::lround(edge)), 0, kPatch_px); };
       spans[static_cast<std::size_t>(i)] = {bound(centre - 0.5 * length), bound(centre + 0.5 * length)};
     }
     return spans;

@@ -82,12 +82,12 @@ class LocalTracker {
   void believe_light() { std::swap(colors_, trial_colors_); }
 
  private:
-  static constexpr int kColors_px = 64;
+  static constexpr int kPatch_px = 64;  ///< two pixels to a cell of the filter.
 
   [[nodiscard]] Box region_of(const Box& box) const;
   [[nodiscard]] Box object_in_patch(double margin) const;
   void take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const;
-  void take_features(const imaging::Pyramid& image, const Box& box);
+  void take_features(const ColorPatch& patch);
   LocalAnswer look_with(const ColorLikelihood& colors, const imaging::Pyramid& image, const Box& box);
   void score_colors(const ColorLikelihood& colors, imaging::RealGrid& score);
 
@@ -104,7 +104,6 @@ class LocalTracker {
   ColorPatch remembered_;  ///< of the last image in which it was seen.
   ColorPatch relit_;
   imaging::Pyramid::Mean remembered_mean_;
-  std::vector<std::uint8_t> luma_;
   std::vector<float> integral_;
 };
 

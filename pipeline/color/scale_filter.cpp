@@ -11,6 +11,7 @@ constexpr int kCell_px = 4;
 constexpr double kMeanSide_px = 24.0;
 constexpr int kShortestSide_px = 12;
 constexpr int kLongestSide_px = 48;
+constexpr double kLeastSteps = 0.25;
 
 int patch_side(double wanted_px) {
   const int cells = static_cast<int>(std::lround(wanted_px / kCell_px));
@@ -67,6 +68,7 @@ void ScaleFilter::begin(const imaging::Pyramid& image, const Box& box) {
     for (auto& values : *spectra) std::fill(values.begin(), values.end(), 0.0F);
   }
   denominator_.fill(0.0F);
+  described_ = {};  // the patch may have another shape now
   describe(image, box);
   absorb(1.0F);
 }
@@ -77,6 +79,9 @@ void ScaleFilter::learn(const imaging::Pyramid& image, const Box& box) {
 }
 
 void ScaleFilter::describe(const imaging::Pyramid& image, const Box& box) {
+  if (box == described_ && image.builds() == described_build_) return;
+  described_ = box;
+  described_build_ = image.builds();
   std::array<std::uint8_t, static_cast<std::size_t>(kLongestSide_px) * kLongestSide_px> luma;
   for (std::size_t n = 0; n < kScales; ++n) {
     image.sample_luma(grown(box, factors_[n]), patch_, luma);
@@ -144,7 +149,8 @@ double ScaleFilter::estimate(const imaging::Pyramid& image, const Box& box) {
     if (curvature < -1e-9)
       position += std::clamp(0.5 * (response[best - 1] - response[best + 1]) / curvature, -0.5, 0.5);
   }
-  return std::pow(parameters_.step, position - kScales / 2);
+  const double steps = position - kScales / 2;
+  return std::abs(steps) < kLeastSteps ? 1.0 : std::pow(parameters_.step, steps);
 }
 
 }  // namespace cgsr::color

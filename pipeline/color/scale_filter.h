@@ -38,6 +38,7 @@ class ScaleFilter {
   /// Learns how it looks now.
   void learn(const imaging::Pyramid& image, const Box& box);
 
+  /// Growth of less than a quarter of a step is none. Learning the box that was just asked about costs half.
   /// \return the factor by which `box` must grow about its centre to hold the object.
   double estimate(const imaging::Pyramid& image, const Box& box);
 
@@ -54,6 +55,8 @@ class ScaleFilter {
   void absorb(float rate);
 
   ScaleParameters parameters_;
+  Box described_;                      ///< whose spectra re_ and im_ are,
+  std::uint64_t described_build_ = 0;  ///< and in which image.
   imaging::PatchSize patch_{};
   std::size_t features_count_ = 0;
   std::array<double, kScales> factors_{};

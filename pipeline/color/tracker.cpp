@@ -26,6 +26,7 @@ Box centred_on(const Box& place, double width, double height) {
 
 /// A box about its centre, grown by a factor that is held within reason.
 Box grown(const Box& box, double factor, const ColorModel& model, double limit) {
+  if (factor == 1.0) return box;
   const double asked = std::clamp(factor, 1.0 / kLargestGrowth, kLargestGrowth);
   const double width = std::clamp(box.width * asked, model.width_px / limit, model.width_px * limit);
   return centred_on(box, width, box.height * width / box.width);

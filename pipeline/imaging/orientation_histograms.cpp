@@ -25,6 +25,10 @@ struct Votes {
 class VoteTable {
  public:
   VoteTable() : votes_(static_cast<std::size_t>(kSteps) * kSteps) {
+    for (int gradient = -255; gradient <= 255; ++gradient) {
+      const int limited = std::clamp(gradient, -kSteepest, kSteepest);
+      steps_[static_cast<std::size_t>(gradient + 255)] = static_cast<std::int16_t>((limited + kSteepest + 1) >> 1);
+    }
     for (int j = 0; j < kSteps; ++j) {
       for (int i = 0; i < kSteps; ++i) {
         const double gx = 2.0 * i - kSteepest;
@@ -46,7 +50,8 @@ class VoteTable {
   }
 
  private:
-  static int step(int gradient) { return (std::clamp(gradient, -kSteepest, kSteepest) + kSteepest + 1) >> 1; }
+  [[nodiscard]] int step(int gradient) const { return steps_[static_cast<std::size_t>(gradient + 255)]; }
+  std::array<std::int16_t, 511> steps_{};
   std::vector<Votes> votes_;
 };
 
@@ -71,36 +76,68 @@ struct Cells {
   }
 };
 
-void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells& cells) {
-  const VoteTable& table = vote_table();
-  const int width = size.width_px;
-  const int height = size.height_px;
-  for (int y = 0; y < height; ++y) {
-    const std::uint8_t* row = luma.data() + static_cast<std::ptrdiff_t>(y) * width;
-    const std::uint8_t* above = y > 0 ? row - width : row;
-    const std::uint8_t* below = y < height - 1 ? row + width : row;
-    const float position_y = (static_cast<float>(y) + 0.5F) / static_cast<float>(cell_px) - 0.5F;
-    const int cell_y = static_cast<int>(std::floor(position_y));
-    const float lower = position_y - static_cast<float>(cell_y);
-    for (int x = 0; x < width; ++x) {
-      const int gx = row[std::min(width - 1, x + 1)] - row[std::max(0, x - 1)];
-      const int gy = below[x] - above[x];
-      if (gx == 0 && gy == 0) continue;
-      const Votes& votes = table.of(gx, gy);
-      // (x + 0.5) / cell - 0.5, in halves of the cell: which cell is left of the pixel, and how far to the right of its centre
+/// One row of pixels: each votes for the two cells beside it, linearly in x. `row_cells` has a cell more on either side.
+class RowVotes {
+ public:
+  RowVotes(int width_px, int cell_px, const VoteTable& table) : width_(width_px), table_(table) {
+    for (int x = 0; x < width_px; ++x) {
+      // (x + 0.5) / cell - 0.5: which cell's centre is left of the pixel, and how far it is from there
       const int doubled = 2 * x + 1 - cell_px;
-      const int cell_x = doubled < 0 ? -1 : doubled / (2 * cell_px);
-      const float right = static_cast<float>(doubled - cell_x * 2 * cell_px) / static_cast<float>(2 * cell_px);
-      float* top_left = cells.at(cell_x, cell_y);
-      float* bottom_left = cells.at(cell_x, cell_y + 1);
-      const auto add = [&votes](float* cell, float weight) {
-        cell[votes.first] += weight * votes.first_weight;
-        cell[votes.second] += weight * votes.second_weight;
-      };
-      add(top_left, (1.0F - right) * (1.0F - lower));
-      add(top_left + Cells::kStride, right * (1.0F - lower));
-      add(bottom_left, (1.0F - right) * lower);
-      add(bottom_left + Cells::kStride, right * lower);
+      const int cell = doubled < 0 ? -1 : doubled / (2 * cell_px);
+      const auto right = static_cast<float>(doubled - cell * 2 * cell_px) / static_cast<float>(2 * cell_px);
+      places_[static_cast<std::size_t>(x)] = {(cell + 1) * kOrientations, 1.0F - right, right};
+    }
+  }
+
+  void cast(const std::uint8_t* above, const std::uint8_t* row, const std::uint8_t* below, float* row_cells) const {
+    vote(0, row[1] - row[0], below[0] - above[0], row_cells);
+    for (int x = 1; x < width_ - 1; ++x) vote(x, row[x + 1] - row[x - 1], below[x] - above[x], row_cells);
+    const int last = width_ - 1;
+    vote(last, row[last] - row[last - 1], below[last] - above[last], row_cells);
+  }
+
+ private:
+  struct Place {
+    int offset;
+    float left_share;
+    float right_share;
+  };
+
+  void vote(int x, int gx, int gy, float* row_cells) const {
+    if ((gx | gy) == 0) return;
+    const Votes votes = table_.of(gx, gy);  // copies: the compiler cannot know that the cells lie elsewhere
+    const Place place = places_[static_cast<std::size_t>(x)];
+    float* first = row_cells + place.offset + votes.first;
+    float* second = row_cells + place.offset + votes.second;
+    first[0] += place.left_share * votes.first_weight;
+    second[0] += place.left_share * votes.second_weight;
+    first[kOrientations] += place.right_share * votes.first_weight;
+    second[kOrientations] += place.right_share * votes.second_weight;
+  }
+
+  int width_;
+  const VoteTable& table_;
+  std::array<Place, 64> places_;
+};
+
+void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells& cells) {
+  const RowVotes votes(size.width_px, cell_px, vote_table());
+  std::array<float, std::size_t{34} * kOrientations> row_cells;
+  const auto row_length = static_cast<std::size_t>((cells.width + 2) * kOrientations);
+  for (int y = 0; y < size.height_px; ++y) {
+    const std::uint8_t* row = luma.data() + static_cast<std::ptrdiff_t>(y) * size.width_px;
+    std::fill_n(row_cells.begin(), row_length, 0.0F);
+    votes.cast(y > 0 ? row - size.width_px : row, row, y < size.height_px - 1 ? row + size.width_px : row,
+               row_cells.data());
+    // The same in y, a whole row at a time.
+    const int doubled = 2 * y + 1 - cell_px;
+    const int cell_y = doubled < 0 ? -1 : doubled / (2 * cell_px);
+    const auto lower = static_cast<float>(doubled - cell_y * 2 * cell_px) / static_cast<float>(2 * cell_px);
+    float* top = cells.at(-1, cell_y);
+    float* bottom = cells.at(-1, cell_y + 1);
+    for (std::size_t i = 0; i < row_length; ++i) {
+      top[i] += (1.0F - lower) * row_cells[i];
+      bottom[i] += lower * row_cells[i];
     }
   }
 }
@@ -142,11 +179,12 @@ void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, 
       const int left = std::max(0, x - 1);
       const int above = std::max(0, y - 1);
       const auto at = [&](int i, int j) { return inverse_norm[static_cast<std::size_t>(j * width + i)]; };
-      const float norms[4] = {at(x, y), at(left, y), at(x, above), at(left, above)};
-      for (int b = 0; b < kOrientations; ++b) {
-        float sum = 0.0F;
-        for (const float norm : norms) sum += std::min(kClip, cell[b] * norm);
-        out[static_cast<std::size_t>(b) * plane + static_cast<std::size_t>(y * width + x)] = 0.5F * sum;
+      const std::array<float, 4> norms{at(x, y), at(left, y), at(x, above), at(left, above)};
+      float* to = out.data() + static_cast<std::ptrdiff_t>(y * width + x);
+      for (int b = 0; b < kOrientations; ++b, to += plane) {
+        const float value = cell[b];
+        *to = 0.5F * (std::min(kClip, value * norms[0]) + std::min(kClip, value * norms[1]) +
+                      std::min(kClip, value * norms[2]) + std::min(kClip, value * norms[3]));
       }
     }
   }

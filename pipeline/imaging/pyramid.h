@@ -56,6 +56,9 @@ class Pyramid {
   };
   [[nodiscard]] Mean mean() const;
 
+  /// How often build() was called: tells one image's patches from another's.
+  [[nodiscard]] std::uint64_t builds() const { return builds_; }
+
   [[nodiscard]] int levels() const { return levels_; }
   [[nodiscard]] const Plane& luma(int level) const { return luma_[level]; }
   [[nodiscard]] const Plane& chroma_u(int level) const { return u_[level]; }  ///< level >= 1
@@ -72,6 +75,7 @@ class Pyramid {
   Plane u_[kLevels];
   Plane v_[kLevels];
   int levels_ = 0;
+  std::uint64_t builds_ = 0;
 };
 
 }  // namespace cgsr::imaging
