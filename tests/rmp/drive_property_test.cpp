@@ -34,8 +34,10 @@ struct Trouble {
 /// A script of troubles of both kinds, some of them overlapping, and when they are.
 std::vector<Trouble> random_troubles(Random& random, Rig::Setup& setup, double until_s) {
   std::vector<Trouble> all;
-  for (double t = random.real(1.0, 3.0); t < until_s; t += random.real(0.3, 4.0)) {
-    const Trouble trouble{at(t), at(t + random.real(0.2, 1.5))};
+  MonoTime next = at(random.real(1.0, 3.0));
+  while (next < at(until_s)) {
+    const Trouble trouble{next, next + seconds(random.real(0.2, 1.5))};
+    next += seconds(random.real(0.3, 4.0));
     const auto kind = random.whole(0, 10);
     if (kind < 5) {
       setup.base_script.push_back({.trouble = static_cast<BaseTrouble>(kind), .from = trouble.from, .to = trouble.to});
