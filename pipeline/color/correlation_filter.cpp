@@ -56,6 +56,11 @@ void CorrelationFilter::learn(const FilterFeatures& features) {
   absorb(static_cast<float>(parameters_.learning_rate));
 }
 
+void CorrelationFilter::forget() {
+  numerator_ = first_numerator_;
+  denominator_ = first_denominator_;
+}
+
 void CorrelationFilter::transform(const FilterFeatures& features) {
   RealGrid a;
   RealGrid b;

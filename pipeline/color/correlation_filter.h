@@ -44,6 +44,9 @@ class CorrelationFilter {
   /// Learns a further patch in which the object is in the middle.
   void learn(const FilterFeatures& features);
 
+  /// Back to what begin() learned.
+  void forget();
+
   /// \param response  of every displacement of the object's centre; (16, 16) is none.
   void respond(const FilterFeatures& features, imaging::RealGrid& response);
 

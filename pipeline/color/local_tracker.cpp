@@ -109,6 +109,12 @@ void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
   scale_.learn(image, box);
 }
 
+void LocalTracker::forget() {
+  shape_.forget();
+  scale_.forget();
+  colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+}
+
 LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box) {
   return look_with(colors_, image, box);
 }

@@ -63,6 +63,9 @@ class LocalTracker {
   /// Learns how it looks in a further image. \param box  where it surely is.
   void learn(const imaging::Pyramid& image, const Box& box);
 
+  /// Back to what begin() learned: what came since was something else.
+  void forget();
+
   /// \return the best place for the object near `box`.
   LocalAnswer look(const imaging::Pyramid& image, const Box& box);
 

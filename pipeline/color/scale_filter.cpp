@@ -56,7 +56,7 @@ ScaleFilter::ScaleFilter(const ScaleParameters& parameters) : parameters_(parame
     target_[static_cast<std::size_t>(k)] = {static_cast<float>(re), static_cast<float>(im)};
   }
   samples_.resize(static_cast<std::size_t>(kScales) * kMostFeatures);
-  for (auto* spectra : {&re_, &im_, &numerator_re_, &numerator_im_}) {
+  for (auto* spectra : {&re_, &im_, &numerator_re_, &numerator_im_, &first_numerator_re_, &first_numerator_im_}) {
     for (auto& values : *spectra) values.resize(kMostFeatures);
   }
 }
@@ -71,6 +71,15 @@ void ScaleFilter::begin(const imaging::Pyramid& image, const Box& box) {
   described_ = {};  // the patch may have another shape now
   describe(image, box);
   absorb(1.0F);
+  first_numerator_re_ = numerator_re_;
+  first_numerator_im_ = numerator_im_;
+  first_denominator_ = denominator_;
+}
+
+void ScaleFilter::forget() {
+  numerator_re_ = first_numerator_re_;
+  numerator_im_ = first_numerator_im_;
+  denominator_ = first_denominator_;
 }
 
 void ScaleFilter::learn(const imaging::Pyramid& image, const Box& box) {

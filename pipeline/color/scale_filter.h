@@ -38,6 +38,9 @@ class ScaleFilter {
   /// Learns how it looks now.
   void learn(const imaging::Pyramid& image, const Box& box);
 
+  /// Back to what begin() learned.
+  void forget();
+
   /// Growth of less than a quarter of a step is none. Learning the box that was just asked about costs half.
   /// \return the factor by which `box` must grow about its centre to hold the object.
   double estimate(const imaging::Pyramid& image, const Box& box);
@@ -66,7 +69,9 @@ class ScaleFilter {
   std::vector<float> samples_;                            // [scale][feature]
   std::array<std::vector<float>, kFrequencies> re_, im_;  // spectra of the patches at hand
   std::array<std::vector<float>, kFrequencies> numerator_re_, numerator_im_;
+  std::array<std::vector<float>, kFrequencies> first_numerator_re_, first_numerator_im_;
   std::array<float, kFrequencies> denominator_{};
+  std::array<float, kFrequencies> first_denominator_{};
 };
 
 }  // namespace cgsr::color

@@ -62,8 +62,12 @@ struct Tracker::State {
   TrackedObject track_plain(const SearchResult& matches) const;
   TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
   Place look(const imaging::ReducedImage& reduced, const Box& box);
+  [[nodiscard]] bool lost() const {
+    return std::max(weak_images, foreign_images) >= parameters.doubt.lost_after_images;
+  }
+  void start_again();
   [[nodiscard]] bool is_weak(const Place& place) const;
-  [[nodiscard]] bool ends_loss(const Place& place) const;
+  bool stayed(const imaging::ReducedImage& reduced, Place& place);
   bool jump(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   TrackedObject answer(const Box& box, double divergence_of_box);
@@ -82,7 +86,10 @@ struct Tracker::State {
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  int weak_images = 0;
+  int weak_images = 0;     ///< in a row.
+  int foreign_images = 0;  ///< in a row.
+  double first_score = 0.0;
+  double first_divergence = 0.0;
 };
 
 /// Until an image is there in which the object was learned, the patch that the model keeps of it has to do.
@@ -96,7 +103,8 @@ void Tracker::State::learn_from_model() {
   learned_quantiles = channel_quantiles(patch, sample.window);
   learned_light = sample.light;
   const LocalAnswer itself = local.look(patch, sample.window);
-  mean_score = itself.score;
+  first_score = itself.score;
+  mean_score = first_score;
 }
 
 SearchResult Tracker::State::search_all(const imaging::ReducedImage& reduced, WorkBudget& budget) {
@@ -123,23 +131,22 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
                                          WorkBudget& budget) {
   Place place;
   bool sure = false;
-  if (located) {
+  if (located && !lost()) {
     local.follow_light(pyramid);
     place = look(reduced, box);
-    const bool lost = weak_images >= parameters.doubt.lost_after_images;
-    if (!lost) {
-      sure = !is_weak(place) || jump(reduced, matches, budget, place);
-      weak_images = sure ? 0 : weak_images + 1;
-      if (!sure && weak_images >= parameters.doubt.lost_after_images) return {};
-    } else if (ends_loss(place)) {
-      sure = true;
-      weak_images = 0;
+    sure = !is_weak(place) || jump(reduced, matches, budget, place);
+    weak_images = sure ? 0 : weak_images + 1;
+    foreign_images = place.divergence > parameters.doubt.foreign_divergence ? foreign_images + 1 : 0;
+    if (lost()) {
+      if (foreign_images > 0) start_again();
+      return {};
     }
-  }
-  const bool searching = !located || weak_images >= parameters.doubt.lost_after_images;
-  if (searching) {
-    if (!find(reduced, matches, budget, place)) return {};
-    sure = true;
+  } else {
+    sure = (located && stayed(reduced, place)) || find(reduced, matches, budget, place);
+    if (!sure) return {};
+    located = true;
+    weak_images = 0;
+    foreign_images = 0;
   }
 
   Box now = place.local.box;
@@ -169,10 +176,21 @@ bool Tracker::State::is_weak(const Place& place) const {
          place.divergence > mean_divergence + doubt.weak_divergence;
 }
 
-bool Tracker::State::ends_loss(const Place& place) const {
+/// \return whether the object is where it was lost, as when something passed before it.
+bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) {
   const DoubtParameters& doubt = parameters.doubt;
+  place = look(reduced, box);
   return place.local.sharpness >= doubt.found_sharpness && place.local.score >= doubt.found_score * mean_score &&
          place.divergence <= mean_divergence + doubt.weak_divergence;
+}
+
+/// What the local tracker followed was not the object: it forgets what it learned from it.
+void Tracker::State::start_again() {
+  local.forget();
+  located = false;
+  box = centred_on(box, model.width_px, model.height_px);
+  mean_score = first_score;
+  mean_divergence = first_divergence;
 }
 
 /// \return whether one of the search's windows is more credible than `place`, which it then replaces.
@@ -218,8 +236,6 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   if (place.local.score < parameters.doubt.found_score * mean_score) return false;
   if (place.divergence > parameters.max_divergence) return false;
   local.believe_light();
-  located = true;
-  weak_images = 0;
   images_since_sight = 0;
   return true;
 }
@@ -264,12 +280,15 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.local.begin(s.pyramid, box);
   s.learned_quantiles = channel_quantiles(s.pyramid, box);
   const Place itself = s.look(reduced, box);
-  s.mean_score = itself.local.score;
-  s.mean_divergence = s.divergence.of(reduced, box).divergence;
+  s.first_score = itself.local.score;
+  s.first_divergence = s.divergence.of(reduced, box).divergence;
+  s.mean_score = s.first_score;
+  s.mean_divergence = s.first_divergence;
   s.box = box;
   s.located = true;
   s.images_since_sight = 0;
   s.weak_images = 0;
+  s.foreign_images = 0;
 }
 
 SearchResult Tracker::search(const imaging::ReducedImage& reduced, WorkBudget& budget) {

@@ -34,6 +34,7 @@ struct DoubtParameters {
   double weak_sharpness = 8.0;
   double weak_score = 0.8;
   double weak_divergence = 0.1;
+  double foreign_divergence = 0.4;
   double jump_sharpness = 7.0;
   double jump_score = 0.8;
   double jump_divergence = 0.05;
@@ -51,6 +52,9 @@ struct DoubtParameters {
     visit.number("weak_score", self.weak_score, {0.0, 2.0}, "", "a score below this share of its mean");
     visit.number("weak_divergence", self.weak_divergence, {0.0, 0.7}, "nat",
                  "a divergence above its mean by more than this");
+    visit.number(
+        "foreign_divergence", self.foreign_divergence, {0.0, 0.7}, "nat",
+        "a box farther than this from every learned histogram holds something else, however sure the local tracker is");
     visit.number("jump_sharpness", self.jump_sharpness, {0.0, 50.0}, "",
                  "what a place elsewhere needs to be believed instead");
     visit.number("jump_score", self.jump_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
