@@ -157,6 +157,7 @@ Result<void> FfmpegSource::open_codec(const AVCodec& decoder, const AVStream& st
   avcodec_parameters_to_context(codec_.get(), &parameters);
   codec_->thread_count = 1;  // no threads that docs/threads.md does not know, and complaints come to the caller
   codec_->flags |= AV_CODEC_FLAG_BITEXACT;
+  codec_->max_pixels = std::int64_t{kLongestSide_px} * kLongestSide_px;  // before memory is taken for them
   // Where every image stands alone, a damaged one is refused; elsewhere the decoder conceals and flags what it can. (Not for
   // TIFF: to its decoder every tag that it does not know is damage, and what is cut off it refuses anyway.)
   const AVCodecDescriptor* descriptor = avcodec_descriptor_get(decoder.id);
@@ -206,8 +207,11 @@ ReadOutcome FfmpegSource::feed() {
     return ReadOutcome::kImage;
   }
   const bool ours = packet_->stream_index == stream_;
-  const int sent = ours ? avcodec_send_packet(codec_.get(), packet_.get()) : 0;
+  // Half a packet decodes to an image whose rest is made up, and no decoder says so of its own.
+  const bool damaged = (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0;
+  const int sent = ours && !damaged ? avcodec_send_packet(codec_.get(), packet_.get()) : 0;
   av_packet_unref(packet_.get());
+  if (ours && damaged) return refuse("is damaged or cut off");
   return sent < 0 && sent != AVERROR(EAGAIN) ? refuse(ffmpeg::words(sent)) : ReadOutcome::kImage;
 }
 

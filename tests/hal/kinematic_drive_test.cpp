@@ -78,6 +78,7 @@ TEST(KinematicDriveProperty, LookingChangesNothing) {
     ASSERT_TRUE(watched.start());
     ASSERT_TRUE(alone.start());
     MonoTime now = at(10.0) + std::chrono::microseconds(pause_us(random));
+    ASSERT_TRUE(watched.odometry(now - std::chrono::microseconds(300)));
     for (int i = 0; i < 100; ++i) {
       const Twist twist{speed(random), speed(random)};
       ASSERT_TRUE(watched.command(twist, now));

@@ -64,8 +64,10 @@ void write_folder(const std::string& folder, int images, cv::Size size, const st
   }
 }
 
-void write_video(const std::string& path, int images, cv::Size size, double rate_hz, bool color) {
-  cv::VideoWriter video(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), rate_hz, size, color);
+void write_video(const std::string& path, int images, cv::Size size, double rate_hz, bool color,
+                 const std::string& codec) {
+  const int fourcc = cv::VideoWriter::fourcc(codec.at(0), codec.at(1), codec.at(2), codec.at(3));
+  cv::VideoWriter video(path, cv::CAP_FFMPEG, fourcc, rate_hz, size, color);
   if (!video.isOpened()) throw std::runtime_error("cannot write " + path);
   for (int i = 0; i < images; ++i) {
     cv::Mat image = numbered_image(i, size);

@@ -32,7 +32,9 @@ int number_of(const ImageView& view);
 
 /// 00000.png and so on; `extension` as ".jpg".
 void write_folder(const std::string& folder, int images, cv::Size size, const std::string& extension = ".png");
-void write_video(const std::string& path, int images, cv::Size size, double rate_hz = 25.0, bool color = true);
+/// \param codec  four letters; motion JPEG where every image stands alone, "XVID" where most are differences to the one before.
+void write_video(const std::string& path, int images, cv::Size size, double rate_hz = 25.0, bool color = true,
+                 const std::string& codec = "MJPG");
 
 std::string read_bytes(const std::string& path);
 void write_bytes(const std::string& path, const std::string& bytes);

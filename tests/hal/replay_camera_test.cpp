@@ -385,6 +385,26 @@ TEST(ReplayCamera, AtItsOwnRateWhoSleepsLosesTheOldest) {
   EXPECT_THAT(replay.camera->last_problem(), HasSubstr("images 1 to 6 are lost"));
 }
 
+TEST(ReplayCamera, StopDoesNotWaitForTheNextImage) {
+  TempFolder folder;
+  write_folder(folder.file("f"), 2, kSmall);
+  auto parameters = replay(folder.file("f"));
+  parameters.pace = ReplayPace::kOwnRate;
+  parameters.rate_hz = 0.1;
+  RealClock clock;
+  ReplayCamera camera(parameters, &clock);
+  ASSERT_TRUE(camera.start());
+  ASSERT_TRUE(camera.next_image(MonoTime::max()));
+  std::thread service([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    camera.stop();
+  });
+  const MonoTime began = clock.now();
+  EXPECT_EQ(camera.next_image(MonoTime::max()).error(), CaptureFailure::kDisconnected);
+  EXPECT_LT(clock.now() - began, std::chrono::seconds(2));
+  service.join();
+}
+
 TEST(ReplayCamera, WhenSimulatedTimeEndsSoDoesTheStream) {
   TempFolder folder;
   write_folder(folder.file("f"), 5, kSmall);
