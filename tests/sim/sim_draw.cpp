@@ -13,6 +13,7 @@
 
 #include "hal/sim/render/renderer.h"
 #include "hal/sim/render/sensor.h"
+#include "hal/sim/scene/map_count.h"
 #include "hal/sim/worlds/world.h"
 #include "src/config/reader.h"
 
@@ -37,11 +38,19 @@ int draw(const std::string& file, const std::filesystem::path& folder, const std
   if (!renderer) return fmt::print(stderr, "{}\n", renderer.error().message), 1;
   std::size_t triangles = 0;
   for (const auto& part : world->scene.parts) triangles += part.mesh.triangles.size();
-  fmt::print("{}: {} parts, {} triangles, ready in {:.0f} ms\n", world->scene.name, world->scene.parts.size(),
-             triangles, cpu_ms() - start);
+  const sim::MapCount map = sim::count_map(world->scene);
+  fmt::print("{}: map of {} surfaces and {} edges; {} parts, {} triangles, ready in {:.0f} ms\n", world->scene.name,
+             map.surfaces, map.edges, world->scene.parts.size(), triangles, cpu_ms() - start);
   std::vector<sim::World::View> views = world->views;
   for (std::size_t i = 0; i < world->X_WR_start.size(); ++i) {
-    views.push_back({world->scene.robots[i].name, world->X_WR_start[i] * sim::mount_of(world->scene.robots[i]), 0.0});
+    const sim::Pose X_RC = sim::mount_of(world->scene.robots[i]);
+    views.push_back({world->scene.robots[i].name, world->X_WR_start[i] * X_RC, 0.0});
+    if (!world->robot_walks[i]) continue;
+    for (const double share : {0.25, 0.43, 0.5, 0.7, 1.0}) {  // along a scripted way
+      const double at_s = share * world->robot_walks[i]->duration_s();
+      views.push_back({fmt::format("{}-{:.0f}s", world->scene.robots[i].name, at_s),
+                       sim::scripted_robots(*world, at_s)[i] * X_RC, at_s});
+    }
   }
   sim::SwitchStates all_on;
   for (const auto& lamp : world->scene.lamps) all_on[lamp.switch_name] = lamp.carried_by < 0;
@@ -50,7 +59,7 @@ int draw(const std::string& file, const std::filesystem::path& folder, const std
   for (const auto& view : views) {
     if (!only.empty() && view.name != only) continue;
     // A robot sees itself, not the other robots of the file.
-    auto state = sim::state_at(world->scene, view.at_s, all_on, world->X_WR_start);
+    auto state = sim::state_at(world->scene, view.at_s, all_on, sim::scripted_robots(*world, view.at_s));
     for (const auto& robot : world->scene.robots) {
       state.presence[static_cast<std::size_t>(robot.figure)].present = robot.name == view.name;
     }

@@ -18,6 +18,7 @@ using Eigen::Vector3f;
 constexpr float kGrid_m = 0.12F;
 constexpr int kMostTexels = 128;
 constexpr int kDirections = 64;
+constexpr float kPassedOn = 0.3F;  // what even a blocked direction gives: walls are bright themselves
 
 // A fixed cosine-weighted set on the hemisphere about +z: the golden-angle spiral on the unit disc, lifted.
 std::array<Vector3f, kDirections> hemisphere() {
@@ -101,7 +102,7 @@ float OpenBaker::open_from(const Vector3f& p_W, const Vector3f& n_W, float reach
     tracer_.nearest(valid, rays, false);
     for (int lane = 0; lane < kPacket; ++lane) sum += rays.ray.tfar[lane] / reach_m;
   }
-  return sum / kDirections;
+  return kPassedOn + (1.0F - kPassedOn) * sum / kDirections;
 }
 
 void OpenBaker::bake(double reach_m, Workers& workers) {

@@ -6,7 +6,7 @@
 namespace cgsr::sim {
 
 /// Computes how open the static places of a scene are to ambient light: 64 cosine-weighted rays from each grid point; one that meets
-/// something at a distance below `reach` lets the share distance / reach through. Corners and the floor under furniture get darker, as in
+/// something at a distance below `reach` lets the share 0.3 + 0.7 distance / reach through. Corners and the floor under furniture get darker, as in
 /// a room whose walls pass light on.
 class OpenBaker {
  public:

@@ -29,6 +29,16 @@ std::vector<LightKey> script_of(const std::vector<LightKeySpec>& specs) {
   return script;
 }
 
+Result<Path> path_of(const WalkSpec& walk) {
+  std::vector<Waypoint> stops;
+  for (const StopSpec& stop : walk.stop) {
+    const bool turns = stop.heading_deg != StopSpec::kAsItCame;
+    stops.push_back({vector(stop.at_m), stop.speed_mps, stop.wait_s, turns ? degrees(stop.heading_deg) : 0.0, turns});
+  }
+  if (stops.empty()) stops.emplace_back();
+  return Path::make(std::move(stops), walk.start_s, degrees(walk.turn_degps), walk.loops);
+}
+
 }  // namespace
 
 Pose pose_of(const ShapeSpec& spec, int copy) {
@@ -100,6 +110,7 @@ void WorldBuilder::add_parts(const ShapeSpec& spec, const Pose& X_FS, int figure
     piece.mesh.transform(X_FS);
     add_part(piece.name.empty() ? spec.name : spec.name + "/" + piece.name, std::move(piece.mesh),
              piece.second ? second : first, figure, spec, piece.casts_shadow);
+    if (piece.detail) world_.scene.parts.back().in_map = false;
   }
 }
 
@@ -109,13 +120,7 @@ void WorldBuilder::add_shape(const ShapeSpec& spec) {
 
 void WorldBuilder::set_script(Figure& figure, const WalkSpec& walk, const std::vector<PresenceSpec>& presence,
                               int line) {
-  std::vector<Waypoint> stops;
-  for (const StopSpec& stop : walk.stop) {
-    const bool turns = stop.heading_deg != StopSpec::kAsItCame;
-    stops.push_back({vector(stop.at_m), stop.speed_mps, stop.wait_s, turns ? degrees(stop.heading_deg) : 0.0, turns});
-  }
-  if (stops.empty()) stops.emplace_back();
-  auto path = Path::make(std::move(stops), walk.start_s, degrees(walk.turn_degps), walk.loops);
+  auto path = path_of(walk);
   if (!path) return complain(line, fmt::format("{}: {}", figure.name, path.error().message));
   figure.path = std::move(*path);
   for (const PresenceSpec& key : presence) figure.presence.push_back({key.at_s, key.present, key.outfit});
@@ -185,6 +190,12 @@ void WorldBuilder::add_robot(const RobotSpec& spec) {
   const int index = sim::add_robot(world_.scene, std::move(robot));
   figures_.emplace(spec.name, world_.scene.robots[static_cast<std::size_t>(index)].figure);
   world_.X_WR_start.push_back(pose_at(vector(spec.start_m), degrees(spec.start_heading_deg)));
+  world_.robot_walks.emplace_back();
+  if (spec.walk.stop.empty()) return;
+  auto path = path_of(spec.walk);
+  if (!path) return complain(spec.line, fmt::format("robot '{}': {}", spec.name, path.error().message));
+  world_.X_WR_start.back() = pose_on_path(path->at(0.0));
+  world_.robot_walks.back() = std::move(*path);
 }
 
 void WorldBuilder::add_lamp(const LampSpec& spec) {

@@ -15,19 +15,20 @@ using Eigen::Vector3d;
 using Pieces = std::vector<Piece>;
 
 // A box by its middle and size.
-void add_box(Pieces& pieces, const char* name, const Vector3d& middle, const Vector3d& size, bool second = false) {
+void add_box(Pieces& pieces, const char* name, const Vector3d& middle, const Vector3d& size, bool second = false,
+             bool detail = false) {
   Mesh mesh = make_box(size);
   mesh.transform(pose_at(middle));
-  pieces.push_back({name, std::move(mesh), second, true});
+  pieces.push_back({name, std::move(mesh), second, true, detail});
 }
 
 // Four legs under a plate of the given height.
-void add_legs(Pieces& pieces, const Vector3d& size, double height, double thick, double inset) {
+void add_legs(Pieces& pieces, const Vector3d& size, double height, double thick, double inset, bool detail) {
   for (const double sx : {-1.0, 1.0}) {
     for (const double sy : {-1.0, 1.0}) {
       add_box(pieces, "leg",
               {sx * (size.x() / 2 - inset - thick / 2), sy * (size.y() / 2 - inset - thick / 2), height / 2},
-              {thick, thick, height}, true);
+              {thick, thick, height}, true, detail);
     }
   }
 }
@@ -36,7 +37,7 @@ Pieces table(const Vector3d& s) {
   Pieces pieces;
   constexpr double kTop = 0.03;
   add_box(pieces, "top", {0, 0, s.z() - kTop / 2}, {s.x(), s.y(), kTop});
-  add_legs(pieces, s, s.z() - kTop, 0.05, 0.04);
+  add_legs(pieces, s, s.z() - kTop, 0.05, 0.04, false);
   return pieces;
 }
 
@@ -46,10 +47,10 @@ Pieces chair(const Vector3d& s) {
   add_box(pieces, "seat", {0, 0, seat - 0.02}, {s.x(), s.y(), 0.04});
   add_box(pieces, "back", {-s.x() / 2 + 0.015, 0, 0.82 * s.z()}, {0.03, s.y(), 0.36 * s.z()});
   add_box(pieces, "post", {-s.x() / 2 + 0.015, s.y() / 2 - 0.03, seat + 0.075 * s.z()}, {0.025, 0.03, 0.15 * s.z()},
-          true);
+          true, true);
   add_box(pieces, "post", {-s.x() / 2 + 0.015, -s.y() / 2 + 0.03, seat + 0.075 * s.z()}, {0.025, 0.03, 0.15 * s.z()},
-          true);
-  add_legs(pieces, s, seat - 0.04, 0.035, 0.01);
+          true, true);
+  add_legs(pieces, s, seat - 0.04, 0.035, 0.01, true);
   return pieces;
 }
 
@@ -70,7 +71,8 @@ Pieces shelf(const Vector3d& s) {
         (0.45 + 0.5 * static_cast<double>(unit(mix(static_cast<std::uint32_t>(i), 7U)))) * (s.y() - 2 * kBoard);
     const double high = (0.6 + 0.2 * static_cast<double>(unit(mix(static_cast<std::uint32_t>(i), 8U)))) * gap;
     const double from = (i % 2 == 0 ? -1.0 : 1.0) * ((s.y() - 2 * kBoard) - filled) / 2;
-    add_box(pieces, "books", {-0.01, from, kBoard + i * gap + high / 2 + 0.0005}, {0.8 * s.x(), filled, high}, true);
+    add_box(pieces, "books", {-0.01, from, kBoard + i * gap + high / 2 + 0.0005}, {0.8 * s.x(), filled, high}, true,
+            true);
   }
   return pieces;
 }
@@ -79,13 +81,13 @@ Pieces cabinet(const Vector3d& s) {
   Pieces pieces;
   constexpr double kDoor = 0.018;
   add_box(pieces, "body", {-kDoor / 2, 0, s.z() / 2}, {s.x() - kDoor, s.y(), s.z()});
-  const int doors = std::max(1, static_cast<int>(std::lround(s.y() / 0.5)));
+  const int doors = std::max(1, static_cast<int>(std::lround(s.y() / 0.6)));
   const double wide = s.y() / doors;
   for (int i = 0; i < doors; ++i) {
     const double y = -s.y() / 2 + (i + 0.5) * wide;
     add_box(pieces, "door", {s.x() / 2 - kDoor / 2, y, s.z() / 2}, {kDoor, wide - 0.008, s.z() - 0.05});
     add_box(pieces, "handle", {s.x() / 2 + 0.01, y + (i % 2 == 0 ? 1 : -1) * (wide / 2 - 0.05), 0.6 * s.z()},
-            {0.02, 0.015, 0.12}, true);
+            {0.02, 0.015, 0.12}, true, true);
   }
   return pieces;
 }
@@ -105,7 +107,7 @@ Pieces sofa(const Vector3d& s) {
     const double y = -s.y() / 2 + arm + (i + 0.5) * wide;
     add_box(pieces, "cushion", {0.1, y, seat + 0.05}, {s.x() - 0.2, wide - 0.01, 0.1}, true);
   }
-  add_legs(pieces, s, 0.08 * s.z(), 0.05, 0.05);
+  add_legs(pieces, s, 0.08 * s.z(), 0.05, 0.05, true);
   return pieces;
 }
 
@@ -116,7 +118,7 @@ Pieces bed(const Vector3d& s) {
   add_box(pieces, "mattress", {0, 0, frame + 0.09}, {s.x() - 0.06, s.y() - 0.06, 0.18}, true);
   add_box(pieces, "head", {-s.x() / 2 - 0.02, 0, s.z() / 2 + 0.1}, {0.04, s.y(), s.z() + 0.2});
   add_box(pieces, "pillow", {-s.x() / 2 + 0.3, 0, frame + 0.22}, {0.4, 0.8 * s.y(), 0.1}, true);
-  add_legs(pieces, s, 0.08, 0.06, 0.02);
+  add_legs(pieces, s, 0.08, 0.06, 0.02, true);
   return pieces;
 }
 
@@ -124,7 +126,7 @@ Pieces plant(const Vector3d& s) {
   Pieces pieces;
   const double pot = 0.28 * s.z();
   Mesh pot_mesh = make_cone(0.2 * s.x(), pot, 0.27 * s.x());
-  pieces.push_back({"pot", std::move(pot_mesh), true, true});
+  pieces.push_back({"pot", std::move(pot_mesh), true, true, true});
   for (int i = 0; i < 22; ++i) {
     const auto seed = static_cast<std::uint32_t>(i);
     const double around = 2.399963 * i;
@@ -141,7 +143,7 @@ Pieces plant(const Vector3d& s) {
     Pose foot = Pose::Identity();
     foot.translation() = Vector3d(0, 0, pot + 0.3 * share * (s.z() - pot));
     leaf.transform(foot * X * bend * up);
-    pieces.push_back({"leaf", std::move(leaf), false, true});
+    pieces.push_back({"leaf", std::move(leaf), false, true, true});
   }
   return pieces;
 }
@@ -154,7 +156,7 @@ Pieces picture(const Vector3d& s) {
   X.linear() << 0, 0, 1, 1, 0, 0, 0, 1, 0;  // its x to the left, its y up, facing forward
   X.translation() = Vector3d(std::max(0.02, s.x()) / 2 + 0.001, 0, s.z() / 2);
   sheet.transform(X);
-  pieces.push_back({"sheet", std::move(sheet), true, false});
+  pieces.push_back({"sheet", std::move(sheet), true, false, false});
   return pieces;
 }
 
@@ -179,7 +181,7 @@ Pieces checkerboard(const ShapeSpec& spec) {
   const Eigen::Vector3f origin = whole.position_m[0];
   const Eigen::Vector3f right = (whole.position_m[1] - origin) / static_cast<float>(spec.columns);
   const Eigen::Vector3f up = (whole.position_m[3] - origin) / static_cast<float>(spec.rows);
-  Pieces pieces{{"squares", {}, false, true}, {"squares", {}, true, true}};
+  Pieces pieces{{"squares", {}, false, true, false}, {"squares", {}, true, true, false}};
   for (int row = 0; row < spec.rows; ++row) {
     for (int column = 0; column < spec.columns; ++column) {
       const auto corner = [&](int c, int r) {
@@ -200,7 +202,7 @@ std::vector<Piece> pieces_of(const ShapeSpec& spec) {
   const Vector3d s(spec.size_m[0], spec.size_m[1], spec.size_m[2]);
   const auto one = [](Mesh mesh, double lift_m = 0.0) {
     mesh.transform(pose_at({0, 0, lift_m}));
-    return Pieces{{"", std::move(mesh), false, true}};
+    return Pieces{{"", std::move(mesh), false, true, false}};
   };
   switch (spec.kind) {
     case ShapeKind::kBox:

@@ -14,6 +14,7 @@ struct Piece {
   Mesh mesh;
   bool second = false;  ///< of the second material.
   bool casts_shadow = true;
+  bool detail = false;  ///< too small to be worth a place in a map: handles, books, legs of chairs.
 };
 
 /// The pieces of a shape that fills `spec.size_m`, standing on the origin, facing +x: one for a primitive, many for furniture. Meshes from

@@ -5,6 +5,15 @@
 
 namespace cgsr::sim {
 
+std::vector<Pose> scripted_robots(const World& world, double time_s) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < world.X_WR_start.size(); ++i) {
+    const std::optional<Path>& walk = world.robot_walks[i];
+    poses.push_back(walk ? pose_on_path(walk->at(time_s)) : world.X_WR_start[i]);
+  }
+  return poses;
+}
+
 Result<World> build_world(const WorldSpec& spec, const std::filesystem::path& file_name) {
   WorldBuilder builder(file_name);
   WorldSpec whole = spec;

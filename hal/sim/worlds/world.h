@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,9 @@ namespace cgsr::sim {
 /// A world that is fit to be rendered, and what its file says beside the scene.
 struct World {
   Scene scene;
-  SensorSettings sensor;         ///< fixed exposure that suits its light.
-  std::vector<Pose> X_WR_start;  ///< [robot]
+  SensorSettings sensor;                         ///< fixed exposure that suits its light.
+  std::vector<Pose> X_WR_start;                  ///< [robot]
+  std::vector<std::optional<Path>> robot_walks;  ///< [robot]: scripted instead of driven.
   struct View {
     std::string name;
     Pose X_WC;
@@ -24,6 +26,9 @@ struct World {
   };
   std::vector<View> views;
 };
+
+/// Where the robots stand by script: on their walk, or where they start.
+std::vector<Pose> scripted_robots(const World& world, double time_s);
 
 /// Makes the world that a file describes.
 ///

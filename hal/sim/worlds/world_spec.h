@@ -108,6 +108,7 @@ struct RobotSpec {
   double camera_down_deg = 0.0;
   bool has_board = false;
   BoardSpec board;
+  WalkSpec walk;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -120,6 +121,7 @@ struct RobotSpec {
     visit.number("camera_down_deg", self.camera_down_deg, {-80.0, 80.0}, "deg", "tilt below the horizon");
     visit.flag("has_board", self.has_board, "carries the probe board");
     visit.section("board", self.board, "the white board with its cones");
+    visit.section("walk", self.walk, "a scripted way instead of a driven base: it starts there");
   }
 };
 
