@@ -15,7 +15,7 @@ VisionLoop::VisionLoop(runtime::StageRunner& runner, color::Tracker tracker, beh
                        const Pinhole& camera, int max_width_px, int max_height_px)
     : runner_(runner),
       tracker_(std::move(tracker)),
-      follow_(std::move(follow)),
+      follow_(follow),
       camera_(camera),
       reduced_(max_width_px, max_height_px),
       decode_("decode", [this](const ImageLease& image) { return decode(image); }),

@@ -158,7 +158,8 @@ double ScaleFilter::estimate(const imaging::Pyramid& image, const Box& box) {
     if (curvature < -1e-9)
       position += std::clamp(0.5 * (response[best - 1] - response[best + 1]) / curvature, -0.5, 0.5);
   }
-  const double steps = position - kScales / 2;
+  constexpr int kUnchanged = kScales / 2;
+  const double steps = position - kUnchanged;
   return std::abs(steps) < kLeastSteps ? 1.0 : std::pow(parameters_.step, steps);
 }
 

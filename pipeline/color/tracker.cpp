@@ -180,7 +180,7 @@ bool Tracker::State::is_weak(const Place& place) const {
 bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) {
   const DoubtParameters& doubt = parameters.doubt;
   place = look(reduced, box);
-  return place.local.sharpness >= doubt.found_sharpness && place.local.score >= doubt.found_score * mean_score &&
+  return place.local.sharpness >= doubt.stay_sharpness && place.local.score >= doubt.stay_score * mean_score &&
          place.divergence <= mean_divergence + doubt.weak_divergence;
 }
 
@@ -233,7 +233,7 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   }
   place.divergence = divergence.of(reduced, place.local.box).divergence;
   if (place.local.sharpness < parameters.doubt.found_sharpness) return false;
-  if (place.local.score < parameters.doubt.found_score * mean_score) return false;
+  if (place.local.score < parameters.doubt.found_score * first_score) return false;
   if (place.divergence > parameters.max_divergence) return false;
   local.believe_light();
   images_since_sight = 0;

@@ -39,8 +39,10 @@ struct DoubtParameters {
   double jump_score = 0.8;
   double jump_divergence = 0.05;
   int lost_after_images = 3;
-  double found_sharpness = 8.0;
-  double found_score = 0.7;
+  double stay_sharpness = 8.0;
+  double stay_score = 0.7;
+  double found_sharpness = 10.0;
+  double found_score = 0.4;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -61,8 +63,13 @@ struct DoubtParameters {
     visit.number("jump_divergence", self.jump_divergence, {0.0, 0.7}, "nat", "and by how much its divergence is lower");
     visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
                  "doubtful images after which the object is lost");
-    visit.number("found_sharpness", self.found_sharpness, {0.0, 50.0}, "", "what ends a loss");
-    visit.number("found_score", self.found_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+    visit.number("stay_sharpness", self.stay_sharpness, {0.0, 50.0}, "",
+                 "what ends a loss in the place where it began");
+    visit.number("stay_score", self.stay_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+    visit.number("found_sharpness", self.found_sharpness, {0.0, 50.0}, "",
+                 "what a sight anywhere else needs, as the first one does");
+    visit.number("found_score", self.found_score, {0.0, 2.0}, "",
+                 "and its score, as a share of what the learned picture itself scores");
   }
 };
 
