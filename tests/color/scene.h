@@ -13,7 +13,7 @@
 #include "platform/box.h"
 #include "platform/image_view.h"
 
-namespace cgsr::color::test {
+namespace cgsr::test {
 
 /// A YUYV image painted for a test.
 class Painting {
@@ -78,11 +78,11 @@ inline Painting clutter(int width_px, int height_px, std::mt19937& random, int p
 }
 
 /// Three colours that a model can be learned from: red above, white in the middle, blue below.
-inline void paint_flag(Painting& painting, const Box& box, const Light& light = {0.8, 0.8, 0.8}) {
+inline void paint_flag(Painting& painting, const Box& box, const color::Light& light = {0.8, 0.8, 0.8}) {
   const double third = box.height / 3.0;
-  painting.fill({box.x, box.y, box.width, third}, lit({0.9, 0.2, 0.15}, light));
-  painting.fill({box.x, box.y + third, box.width, third}, lit({0.95, 0.9, 0.9}, light));
-  painting.fill({box.x, box.y + 2 * third, box.width, third}, lit({0.15, 0.3, 0.85}, light));
+  painting.fill({box.x, box.y, box.width, third}, color::lit({0.9, 0.2, 0.15}, light));
+  painting.fill({box.x, box.y + third, box.width, third}, color::lit({0.95, 0.9, 0.9}, light));
+  painting.fill({box.x, box.y + 2 * third, box.width, third}, color::lit({0.15, 0.3, 0.85}, light));
 }
 
-}  // namespace cgsr::color::test
+}  // namespace cgsr::test

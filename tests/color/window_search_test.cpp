@@ -261,7 +261,7 @@ TEST(WindowSearchFault, SaysWhatItCannotDo) {
 
 // Sizes, candidates and regions change from image to image: nothing is allocated, nothing faults.
 TEST(WindowSearchAlloc, NothingAfterConstruction) {
-  if (!cgsr::test::AllocationGuard::counts()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "a sanitizer brings its own malloc";
   FlagWorld world;
   auto search = WindowSearch::create(world.model, {}, 320, 240).value();
   std::mt19937 random(72);
@@ -273,7 +273,7 @@ TEST(WindowSearchAlloc, NothingAfterConstruction) {
   for (int i = 0; i < 60; ++i) requests.push_back(random_request(world.model, 320, 240, random));
   int matches = 0;
   (void)search.search(image, requests[0]);
-  const cgsr::test::AllocationGuard guard;
+  const test::AllocationGuard guard;
   for (const auto& request : requests) {
     const auto result = search.search(image, request);
     if (result) matches += result->count;
