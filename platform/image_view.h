@@ -6,9 +6,9 @@
 namespace cgsr {
 
 enum class PixelFormat : std::uint8_t {
-  kYuyv,    ///< 4:2:2, bytes Y0 U Y1 V, BT.601 limited range (Y 16..235, U and V 16..240); the width is even.
-  kGrey8,   ///< one byte of luma.
-  kBgr24,   ///< three bytes, sRGB-encoded. Only for drawing, learning and files; never on the frame path.
+  kYuyv,   ///< 4:2:2, bytes Y0 U Y1 V, BT.601 limited range (Y 16..235, U and V 16..240); the width is even.
+  kGrey8,  ///< one byte of luma.
+  kBgr24,  ///< three bytes, sRGB-encoded. Only for drawing, learning and files; never on the frame path.
 };
 
 /// An image that lies elsewhere: never owns, never copies. Pixels count from 0 at the centre of the top-left pixel.

@@ -68,7 +68,7 @@ class KinematicDrive final : public Drive {
   const KinematicDriveParameters parameters_;
   std::atomic<DriveMood> mood_{DriveMood::kWell};
   bool started_ = false;
-  bool on_grid_ = false;     // the first `now` has been seen
+  bool on_grid_ = false;  // the first `now` has been seen
   bool heard_any_ = false;
   Odometry state_;           // at the last point of the grid
   Odometry heard_;           // what odometry() tells

@@ -41,7 +41,7 @@ struct DoubtParameters {
   int lost_after_images = 3;
   double stay_sharpness = 8.0;
   double stay_score = 0.7;
-  double found_sharpness = 10.0;
+  double found_sharpness = 14.0;
   double found_score = 0.4;
 
   template <class Self, class Visitor>
@@ -75,7 +75,7 @@ struct DoubtParameters {
 
 struct TrackParameters {
   TrackMode mode = TrackMode::kFull;
-  double max_divergence = 0.30;
+  double max_divergence = 0.40;
   int candidates = 3;
   double size_limit = 5.0;
   SearchParameters search;

@@ -14,8 +14,8 @@ namespace cgsr::app {
 struct InputOptions {
   std::string path;
   int first = 0;
-  int count = 0;      ///< 0: to the end.
-  int width_px = 0;   ///< scale to this size; 0: as stored.
+  int count = 0;     ///< 0: to the end.
+  int width_px = 0;  ///< scale to this size; 0: as stored.
   int height_px = 0;
 };
 
