@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -39,6 +40,24 @@ class Documentation {
     current_ = outer;
   }
 
+  template <std::size_t kCount>
+  void numbers(std::string_view name, const std::array<double, kCount>& values, Range<double> range,
+               std::string_view unit, std::string_view meaning) {
+    numbers_row(name, values.data(), kCount, range, unit, meaning);
+  }
+
+  /// A list is described by one element with its defaults.
+  template <class Struct>
+  void list(std::string_view name, const std::vector<Struct>&, std::string_view meaning) {
+    const std::size_t outer = enter(name, meaning);
+    sections_[current_].is_list = true;
+    const Struct defaults;
+    Struct::describe(defaults, *this);
+    current_ = outer;
+  }
+
+  void line(int) {}
+
   [[nodiscard]] std::string markdown() const;
 
  private:
@@ -46,11 +65,15 @@ class Documentation {
     std::string path;
     std::string meaning;
     std::string rows;
+    bool is_list = false;
   };
 
   std::size_t enter(std::string_view name, std::string_view meaning);
   void row(std::string_view name, std::string_view unit, std::string_view range, std::string_view value,
            std::string_view meaning);
+
+  void numbers_row(std::string_view name, const double* values, std::size_t count, Range<double> range,
+                   std::string_view unit, std::string_view meaning);
 
   std::vector<Section> sections_;
   std::size_t current_ = 0;

@@ -1,13 +1,16 @@
 #include "hal/sim/people/person.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/features2d.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/objdetect.hpp>
@@ -106,6 +109,73 @@ TEST(PeopleFaces, AreFoundFromTheFrontAndNotFromTheSide) {
   std::printf("found: %.1f %% within 20 degrees, %.1f %% beyond 65\n", 100 * front, 100 * side);
   EXPECT_GE(front, 0.95);
   EXPECT_LE(side, 0.03);
+}
+
+// SIFT descriptors of a head as the camera sees it at 640x480.
+cv::Mat descriptors(const Portrait& portrait, Renderer& renderer, double distance_m, std::uint32_t seed) {
+  static const Sensor sensor;
+  static const auto sift = cv::SIFT::create(0, 3, 0.02);
+  const SceneState state = state_at(portrait.scene, 0.0);
+  const Pose X_WC = look_at({-distance_m, 0.05, 1.5}, {0, 0, 1.55});
+  RadianceImage image;
+  renderer.draw(state, X_WC, image);
+  cv::Mat yuyv(480, 640, CV_8UC2);
+  SensorSettings settings;
+  settings.gain = 1.5;
+  sensor.measure(image, settings, seed, 0, {yuyv.data, 640, 480, 1280}, renderer.workers());
+  cv::Mat grey;
+  cv::extractChannel(yuyv, grey, 0);
+  const Box box = figure_view(renderer, state, X_WC, 0, {portrait.head}).whole;
+  std::vector<cv::KeyPoint> points;
+  cv::Mat result;
+  sift->detectAndCompute(grey(cv::Rect(cv::Rect2d(box.x, box.y, box.width, box.height))), {}, points, result);
+  return result;
+}
+
+// A descriptor counts for the identity it is nearest to when every other identity is clearly farther.
+int recognised(const cv::Mat& seen, const std::vector<cv::Mat>& enrolled) {
+  std::vector<int> votes(enrolled.size(), 0);
+  for (int i = 0; i < seen.rows; ++i) {
+    std::vector<std::pair<double, int>> nearest;
+    for (std::size_t who = 0; who < enrolled.size(); ++who) {
+      double least = 1e9;
+      for (int j = 0; j < enrolled[who].rows; ++j) least = std::min(least, cv::norm(seen.row(i), enrolled[who].row(j)));
+      nearest.emplace_back(least, static_cast<int>(who));
+    }
+    std::sort(nearest.begin(), nearest.end());
+    if (nearest[0].first < 0.9 * nearest[1].first) ++votes[static_cast<std::size_t>(nearest[0].second)];
+  }
+  return static_cast<int>(std::max_element(votes.begin(), votes.end()) - votes.begin());
+}
+
+TEST(PeopleFaces, DifferEnoughForSift) {
+  std::vector<Portrait> people;
+  std::vector<std::unique_ptr<Renderer>> cameras;
+  std::vector<cv::Mat> enrolled;
+  people.reserve(kIdentities);  // renderers look into the scenes
+  std::uint32_t seed = 0;
+  for (int i = 0; i < kIdentities; ++i) {
+    people.emplace_back(i);
+    cameras.push_back(renderer_for(people.back().scene, CameraModel(), 4));
+    people.back().turn(degrees(-8));
+    cv::Mat both = descriptors(people.back(), *cameras.back(), 1.0, ++seed);
+    people.back().turn(degrees(8));
+    cv::vconcat(both, descriptors(people.back(), *cameras.back(), 1.2, ++seed), both);
+    enrolled.push_back(both);
+  }
+  int right = 0;
+  int trials = 0;
+  for (int i = 0; i < kIdentities; ++i) {
+    for (const auto& [distance, yaw] : {std::pair{0.9, 0.0}, {1.3, 12.0}, {1.6, -5.0}}) {
+      people[static_cast<std::size_t>(i)].turn(degrees(yaw));
+      const cv::Mat seen =
+          descriptors(people[static_cast<std::size_t>(i)], *cameras[static_cast<std::size_t>(i)], distance, ++seed);
+      right += recognised(seen, enrolled) == i ? 1 : 0;
+      ++trials;
+    }
+  }
+  std::printf("SIFT tells %d of %d apart\n", right, trials);
+  EXPECT_GE(right, trials - 1);
 }
 
 }  // namespace

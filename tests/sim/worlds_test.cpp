@@ -2,6 +2,8 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "hal/sim/scene/portable_math.h"
 #include "hal/sim/worlds/planar_world.h"
 #include "hal/sim/worlds/world.h"
+#include "src/config/documentation.h"
 #include "src/config/reader.h"
 #include "tests/sim/small_scenes.h"
 
@@ -100,6 +103,12 @@ TEST(WorldsProperty, ThePlanarWorldScales) {
       EXPECT_GT(count.edges, (half ? 2 * edges : edges) - 24) << edges;
     }
   }
+}
+
+TEST(Worlds, TheirPageSaysWhatTheReaderReads) {
+  std::ifstream file(std::filesystem::path(CGSR_SOURCE_DIR) / "docs/worlds.md");
+  const std::string page((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_THAT(page, HasSubstr(config::markdown<WorldSpec>())) << "build/release/world_docs > docs/worlds.md";
 }
 
 std::string problems(const std::string& toml) {

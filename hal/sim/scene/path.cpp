@@ -75,7 +75,7 @@ double Path::duration_s() const {
 }
 
 // A turn is spread evenly over the moment between two legs, as long as the turn rate needs but never more than half of either leg.
-double Path::heading_near(std::size_t leg, double time_s) const {
+double Path::heading_near(std::size_t leg, double time_s, bool again) const {
   const Leg& here = legs_[leg];
   const auto blend = [&](const Leg& before, const Leg& after) {
     const double turn = wrap_angle(after.heading_rad - before.heading_rad);
@@ -85,19 +85,30 @@ double Path::heading_near(std::size_t leg, double time_s) const {
     const double share = std::clamp((time_s - (after.begin_s - half)) / (2.0 * half), 0.0, 1.0);
     return wrap_angle(before.heading_rad + share * turn);
   };
+  const auto shifted = [&](Leg other, double by_s) {
+    other.begin_s += by_s;
+    other.end_s += by_s;
+    return other;
+  };
   const bool in_first_half = time_s - here.begin_s < here.end_s - time_s;
-  if (in_first_half && leg > 0) return blend(legs_[leg - 1], here);
-  if (!in_first_half && leg + 1 < legs_.size()) return blend(here, legs_[leg + 1]);
+  if (in_first_half) {
+    if (leg > 0) return blend(legs_[leg - 1], here);
+    if (again) return blend(shifted(legs_.back(), -duration_s()), here);
+  } else {
+    if (leg + 1 < legs_.size()) return blend(here, legs_[leg + 1]);
+    if (loops_) return blend(here, shifted(legs_.front(), duration_s()));
+  }
   return here.heading_rad;
 }
 
 PathPoint Path::at(double time_s) const {
   if (legs_.empty()) return {};
   const double begin = legs_.front().begin_s;
+  double rounds = 0.0;
   double rounds_m = 0.0;
   if (loops_ && time_s > begin) {
     const double period = duration_s();
-    const double rounds = std::floor((time_s - begin) / period);
+    rounds = std::floor((time_s - begin) / period);
     time_s -= rounds * period;
     const Leg& last = legs_.back();
     rounds_m = rounds * (last.walked_before_m + (last.to - last.from).norm());
@@ -111,7 +122,8 @@ PathPoint Path::at(double time_s) const {
   const double share = (time_s - after->begin_s) / (after->end_s - after->begin_s);
   const Eigen::Vector3d way = after->to - after->from;
   const double speed = way.norm() / (after->end_s - after->begin_s);
-  return {after->from + share * way, heading_near(static_cast<std::size_t>(after - legs_.begin()), time_s),
+  return {after->from + share * way,
+          heading_near(static_cast<std::size_t>(after - legs_.begin()), time_s, rounds > 0.0),
           rounds_m + after->walked_before_m + share * way.norm(), speed};
 }
 

@@ -50,7 +50,7 @@ class Path {
     double walked_before_m;
   };
 
-  [[nodiscard]] double heading_near(std::size_t leg, double time_s) const;
+  [[nodiscard]] double heading_near(std::size_t leg, double time_s, bool again) const;
 
   std::vector<Leg> legs_;  // never empty once made; consecutive in time
   double turn_radps_ = 2.0;
