@@ -35,7 +35,10 @@ class OurTracker final : public BoxTracker {
     if (!reduced) return {};
     UnlimitedBudget budget;
     count_stage_begin();
-    const color::TrackedObject object = tracker_->track(view, *reduced_, budget);
+    const color::SearchResult matches = tracker_->search(*reduced_, budget);
+    count_stage_end("search");
+    count_stage_begin();
+    const color::TrackedObject object = tracker_->track(view, *reduced_, matches, budget);
     count_stage_end("track");
     if (!object.found) return {};
     return {object.box, object.light, object.exact_light};
@@ -59,9 +62,10 @@ std::unique_ptr<BoxTracker> make_ours(const config::Color& configuration, Start 
   return std::make_unique<OurTracker>(configuration, start);
 }
 
-std::unique_ptr<BoxTracker> make_plain(config::Color configuration, Start start) {
-  configuration.track.mode = color::TrackMode::kPlain;
-  return std::make_unique<OurTracker>(configuration, start);
+std::unique_ptr<BoxTracker> make_plain(const config::Color& configuration, Start start) {
+  config::Color plain = configuration;
+  plain.track.mode = color::TrackMode::kPlain;
+  return std::make_unique<OurTracker>(plain, start);
 }
 
 }  // namespace cgsr::lab

@@ -13,10 +13,11 @@ enum class Start {
   kAnywhere,      ///< the next image is unrelated: no prior.
 };
 
-/// Chapter 3 behind the lab's face. Its stages are marked for tools/count: labels (imaging::reduce) and track (everything else).
+/// Chapter 3 behind the lab's face. Its stages are marked for tools/count: labels (imaging::reduce), search (Alg. 3.2) and
+/// track (everything else).
 std::unique_ptr<BoxTracker> make_ours(const config::Color& configuration, Start start = Start::kWhereLearned);
 
 /// The same in the dissertation's own mode.
-std::unique_ptr<BoxTracker> make_plain(config::Color configuration, Start start = Start::kWhereLearned);
+std::unique_ptr<BoxTracker> make_plain(const config::Color& configuration, Start start = Start::kWhereLearned);
 
 }  // namespace cgsr::lab

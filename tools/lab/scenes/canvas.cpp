@@ -29,7 +29,7 @@ void blur(Canvas& canvas) {
 }
 
 std::uint8_t to_byte(double base, double value, double low, double high) {
-  return static_cast<std::uint8_t>(std::clamp(base + value, low, high) + 0.5);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(base + value, low, high)));
 }
 
 std::uint8_t luma(const Rgb& c) {

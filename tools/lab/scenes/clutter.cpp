@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <opencv2/core.hpp>
+
 #include "tools/lab/scenes/texture.h"
 
 namespace cgsr::lab {
@@ -83,21 +85,21 @@ Leaf random_leaf(int width_px, int height_px, double least_px, double most_px, R
 }
 
 /// Which leaf lies on top at each pixel; the first two lie under everything and fill the image (a wall, a floor).
-std::vector<int> stack_up(const std::vector<Leaf>& leaves, int width_px, int height_px, double horizon_px) {
-  std::vector<int> top(static_cast<std::size_t>(width_px * height_px));
+cv::Mat1i stack_up(const std::vector<Leaf>& leaves, int width_px, int height_px, double horizon_px) {
+  cv::Mat1i top(height_px, width_px, 0);
   for (int y = 0; y < height_px; ++y) {
-    std::fill_n(top.begin() + y * width_px, width_px, y < horizon_px ? 0 : 1);
+    if (y >= horizon_px) top.row(y) = 1;
   }
   for (int i = 2; i < static_cast<int>(leaves.size()); ++i) {
     const Leaf& leaf = leaves[static_cast<std::size_t>(i)];
     const double reach = std::sqrt(leaf.along * leaf.along + leaf.across * leaf.across);
-    const int left = std::max(0, static_cast<int>(leaf.x - reach)),
-              right = std::min(width_px, static_cast<int>(leaf.x + reach) + 1);
-    const int first = std::max(0, static_cast<int>(leaf.y - reach)),
-              last = std::min(height_px, static_cast<int>(leaf.y + reach) + 1);
+    const int left = std::max(0, static_cast<int>(leaf.x - reach));
+    const int right = std::min(width_px, static_cast<int>(leaf.x + reach) + 1);
+    const int first = std::max(0, static_cast<int>(leaf.y - reach));
+    const int last = std::min(height_px, static_cast<int>(leaf.y + reach) + 1);
     for (int y = first; y < last; ++y) {
       for (int x = left; x < right; ++x) {
-        if (leaf.covers(x, y)) top[static_cast<std::size_t>(y * width_px + x)] = i;
+        if (leaf.covers(x, y)) top(y, x) = i;
       }
     }
   }
@@ -126,12 +128,13 @@ Rgb other_color(const std::vector<Rgb>& palette, Random& random) {
 
 Canvas random_clutter(int width_px, int height_px, const std::vector<Rgb>& palette, double shared, Random random) {
   std::vector<Leaf> leaves;
+  leaves.reserve(kLeaves);
   for (int i = 0; i < kLeaves; ++i) {
     // Large ones first: what lies in front is small.
     leaves.push_back(i < kLeaves / 6 ? random_leaf(width_px, height_px, 80.0, 320.0, random)
                                      : random_leaf(width_px, height_px, 12.0, 150.0, random));
   }
-  const std::vector<int> top = stack_up(leaves, width_px, height_px, random.uniform(0.4, 0.8) * height_px);
+  const cv::Mat1i top = stack_up(leaves, width_px, height_px, random.uniform(0.4, 0.8) * height_px);
 
   std::vector<int> visible(leaves.size());
   for (int leaf : top) ++visible[static_cast<std::size_t>(leaf)];
@@ -149,10 +152,10 @@ Canvas random_clutter(int width_px, int height_px, const std::vector<Rgb>& palet
     leaves[i].second = joins ? shared_color(palette, random) : other_color(palette, random);
   }
 
-  Canvas canvas{width_px, height_px, std::vector<Rgb>(top.size())};
+  Canvas canvas{width_px, height_px, std::vector<Rgb>(top.total())};
   for (int y = 0; y < height_px; ++y) {
     for (int x = 0; x < width_px; ++x) {
-      const Rgb c = leaves[static_cast<std::size_t>(top[static_cast<std::size_t>(y * width_px + x)])].color_at(x, y);
+      const Rgb c = leaves[static_cast<std::size_t>(top(y, x))].color_at(x, y);
       canvas.at(x, y) = {std::min(c.r, 1.0), std::min(c.g, 1.0), std::min(c.b, 1.0)};
     }
   }
