@@ -1,11 +1,11 @@
 #include "platform/thread.h"
 
 #include <fmt/format.h>
-#include <limits.h>
 #include <sched.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstring>
 #include <utility>
 

@@ -27,7 +27,9 @@ class VoteTable {
   VoteTable() : votes_(static_cast<std::size_t>(kSteps) * kSteps) {
     for (int gradient = -255; gradient <= 255; ++gradient) {
       const int limited = std::clamp(gradient, -kSteepest, kSteepest);
-      steps_[static_cast<std::size_t>(gradient + 255)] = static_cast<std::int16_t>((limited + kSteepest + 1) >> 1);
+      // Odd ones away from zero, either way: the negative of an image has the same orientations.
+      const int steps = limited < 0 ? -((1 - limited) / 2) : (limited + 1) / 2;
+      steps_[static_cast<std::size_t>(gradient + 255)] = static_cast<std::int16_t>(steps + kSteepest / 2);
     }
     for (int j = 0; j < kSteps; ++j) {
       for (int i = 0; i < kSteps; ++i) {

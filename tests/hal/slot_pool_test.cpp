@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 #include <set>
@@ -62,7 +63,8 @@ TEST(SlotPoolStress, AReaderNeverSeesTheNextWriter) {
   SlotPool pool;
   ASSERT_TRUE(pool.shape(5, 16, 2));
   const auto bytes = static_cast<std::size_t>(pool.stride_bytes()) * 2;
-  constexpr int kHandOvers = 200'000;
+  const char* long_run = std::getenv("CGSR_STRESS_HANDOVERS");
+  const int hand_overs = long_run != nullptr ? std::atoi(long_run) : 40'000;
   std::atomic<int> mailboxes[2] = {{-1}, {-1}};
   std::atomic<int> mixed{0};
   const auto read = [&](std::atomic<int>& mailbox) {
@@ -86,7 +88,7 @@ TEST(SlotPoolStress, AReaderNeverSeesTheNextWriter) {
   };
   std::thread first([&] { read(mailboxes[0]); });
   std::thread second([&] { read(mailboxes[1]); });
-  for (int i = 0; i < kHandOvers; ++i) {
+  for (int i = 0; i < hand_overs; ++i) {
     int slot = pool.take();
     for (; slot < 0; slot = pool.take()) std::this_thread::yield();
     std::memset(pool.pixels(slot), i % 251, bytes);
