@@ -8,11 +8,11 @@
 #include "hal/replay/replay_camera.h"
 #include "pipeline/color/model_file.h"
 #include "pipeline/runtime/schedule.h"
+#include "platform/config/canonical.h"
+#include "platform/config/template.h"
 #include "src/command.h"
-#include "src/config/canonical.h"
 #include "src/config/load.h"
 #include "src/config/robot_docs.h"
-#include "src/config/template.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {

@@ -8,8 +8,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/color/model_file.h"
+#include "platform/config/canonical.h"
 #include "src/command.h"
-#include "src/config/canonical.h"
 #include "src/config/load.h"
 #include "src/input/image_input.h"
 #include "src/output/learn_preview.h"

@@ -9,10 +9,10 @@
 
 #include "pipeline/color/light_history.h"
 #include "pipeline/color/model_file.h"
+#include "platform/config/canonical.h"
 #include "platform/count_marks.h"
 #include "platform/stop.h"
 #include "src/command.h"
-#include "src/config/canonical.h"
 #include "src/config/load.h"
 #include "src/input/image_input.h"
 #include "src/output/overlay.h"

@@ -14,6 +14,7 @@ HAL_INTERFACES = "hal"                     # hal/*.h
 CHAPTERS = ["pipeline/color", "pipeline/localization", "pipeline/illumination", "pipeline/person"]
 ALLOWED = {
     "platform": [],
+    "platform/config": ["platform"],
     HAL_INTERFACES: ["platform"],
     "hal/replay": [HAL_INTERFACES, "platform"],
     "hal/dummy": [HAL_INTERFACES, "platform"],
@@ -21,7 +22,7 @@ ALLOWED = {
     "hal/gpiod": [HAL_INTERFACES, "platform"],
     "hal/socketcan": [HAL_INTERFACES, "platform"],
     "hal/rmp": [HAL_INTERFACES, "platform"],
-    "hal/sim": [HAL_INTERFACES, "platform"],
+    "hal/sim": [HAL_INTERFACES, "platform", "platform/config"],  # worlds are files
     "pipeline/runtime": ["platform"],
     "pipeline/imaging": ["platform"],
     "pipeline/geometry": ["platform"],

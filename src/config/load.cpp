@@ -1,6 +1,6 @@
 #include "src/config/load.h"
 
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 
 namespace cgsr::config {
 

@@ -1,6 +1,6 @@
 #include "src/config/robot_docs.h"
 
-#include "src/config/documentation.h"
+#include "platform/config/documentation.h"
 #include "src/config/robot.h"
 
 namespace cgsr::config {

@@ -6,7 +6,7 @@
 
 #include "pipeline/color/light_history.h"
 #include "pipeline/runtime/stage_table.h"
-#include "src/config/sha256.h"
+#include "platform/config/sha256.h"
 #include "src/output/overlay.h"
 #include "src/output/text_file.h"
 #include "src/output/video_writer.h"

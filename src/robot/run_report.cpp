@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "src/config/canonical.h"
+#include "platform/config/canonical.h"
 
 namespace cgsr::robot {
 namespace {

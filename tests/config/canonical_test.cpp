@@ -1,10 +1,10 @@
-#include "src/config/canonical.h"
+#include "platform/config/canonical.h"
 
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 #include "tests/config/sample.h"
 
 namespace cgsr::config {

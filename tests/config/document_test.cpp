@@ -1,4 +1,4 @@
-#include "src/config/document.h"
+#include "platform/config/document.h"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "src/config/documentation.h"
+#include "platform/config/documentation.h"
 
 #include <fstream>
 #include <sstream>

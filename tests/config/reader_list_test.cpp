@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 
 namespace cgsr::config {
 namespace {

@@ -7,8 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "src/config/canonical.h"
-#include "src/config/reader.h"
+#include "platform/config/canonical.h"
+#include "platform/config/reader.h"
 #include "src/config/robot.h"
 #include "tests/config/audit.h"
 #include "tests/config/sample.h"

@@ -1,4 +1,4 @@
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 
 #include <filesystem>
 #include <fstream>

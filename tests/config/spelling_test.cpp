@@ -1,4 +1,4 @@
-#include "src/config/spelling.h"
+#include "platform/config/spelling.h"
 
 #include <string>
 

@@ -15,7 +15,7 @@
 #include "hal/sim/render/sensor.h"
 #include "hal/sim/scene/map_count.h"
 #include "hal/sim/worlds/world.h"
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 
 namespace {
 

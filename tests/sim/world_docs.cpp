@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hal/sim/worlds/world_spec.h"
-#include "src/config/documentation.h"
+#include "platform/config/documentation.h"
 
 int main() {
   const std::string text =

@@ -17,8 +17,8 @@
 #include "hal/sim/scene/portable_math.h"
 #include "hal/sim/worlds/planar_world.h"
 #include "hal/sim/worlds/world.h"
-#include "src/config/documentation.h"
-#include "src/config/reader.h"
+#include "platform/config/documentation.h"
+#include "platform/config/reader.h"
 #include "tests/sim/small_scenes.h"
 
 namespace cgsr::sim {

@@ -45,11 +45,17 @@ class CheckLayers(unittest.TestCase):
     def test_platform_that_knows_the_pipeline(self):
         self.assert_caught({"pipeline/runtime/b.h": "", "platform/a.h": '#include "pipeline/runtime/b.h"\n'}, "platform may not include")
 
+    def test_a_chapter_that_reads_a_configuration(self):
+        self.assert_caught({"platform/config/reader.h": "", "pipeline/color/a.h": '#include "platform/config/reader.h"\n'}, "pipeline/color may not include")
+
     def test_chapters_that_know_each_other(self):
         self.assert_caught({"pipeline/color/b.h": "", "pipeline/localization/a.h": '#include "pipeline/color/b.h"\n'}, "pipeline/localization may not include")
 
     def test_a_peer_outside_the_lab(self):
         self.assert_caught({"src/a.cpp": "#include <opencv2/tracking.hpp>\n"}, "tools/lab only")
+
+    def test_truth_outside_tests_and_tools(self):
+        self.assert_caught({"hal/sim/truth.h": "", "src/a.cpp": '#include "hal/sim/truth.h"\n'}, "hal/sim/truth.h may be included by tests")
 
     def test_a_path_that_does_not_start_at_the_root(self):
         self.assert_caught({"platform/a.h": '#include "b.h"\n', "platform/b.h": ""}, "not a path from the root")

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "src/config/canonical.h"
+#include "platform/config/canonical.h"
 
 namespace cgsr::lab {
 

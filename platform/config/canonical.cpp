@@ -1,8 +1,8 @@
-#include "src/config/canonical.h"
+#include "platform/config/canonical.h"
 
 #include <fmt/format.h>
 
-#include "src/config/tree.h"
+#include "platform/config/tree.h"
 
 namespace cgsr::config {
 

@@ -1,4 +1,4 @@
-#include "src/config/sha256.h"
+#include "platform/config/sha256.h"
 
 #include <openssl/evp.h>
 

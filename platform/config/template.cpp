@@ -1,4 +1,4 @@
-#include "src/config/template.h"
+#include "platform/config/template.h"
 
 #include <fmt/core.h>
 #include <fmt/format.h>

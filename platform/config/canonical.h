@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "platform/config/sha256.h"
 #include "platform/parameters.h"
-#include "src/config/sha256.h"
 
 namespace cgsr::config {
 

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "platform/config/document.h"
 #include "platform/error.h"
 #include "platform/parameters.h"
-#include "src/config/document.h"
 
 namespace cgsr::config {
 

@@ -1,4 +1,4 @@
-#include "src/config/document.h"
+#include "platform/config/document.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "src/config/tree.h"
+#include "platform/config/tree.h"
 
 namespace cgsr::config {
 

@@ -1,4 +1,4 @@
-#include "src/config/reader.h"
+#include "platform/config/reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "src/config/spelling.h"
-#include "src/config/tree.h"
+#include "platform/config/spelling.h"
+#include "platform/config/tree.h"
 
 namespace cgsr::config {
 
