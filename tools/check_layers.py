@@ -38,12 +38,13 @@ ALLOWED = {
                  "pipeline/render", "pipeline/behavior", *CHAPTERS],
 }
 # The outermost rooms see everything, but nobody sees them, and what is theirs alone stays theirs.
-OUTERMOST = ["src", "src/config", "tools/lab", "tests"]
+OUTERMOST = ["src", "src/config", "tools/lab", "tools/sim", "tests"]
 # A chapter knows no device, thread, clock or environment.
 FORBIDDEN_IN_CHAPTERS = re.compile(r'^\s*#include\s+[<"](thread|mutex|condition_variable|fcntl\.h|unistd\.h|sys/|platform/(clock|thread|stop|service)\.h|hal/)')
 PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", *CHAPTERS]
-# Peers are linked by the lab alone; the simulator's truth is for tests and the lab.
-ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": ["tests", "tools/lab", "hal/sim"]}
+# Peers are linked by the lab alone; the simulator's truth is for tests, the lab and the simulator's own tools.
+TRUTH_ROOMS = ["tests", "tools/lab", "tools/sim", "hal/sim"]
+ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": TRUTH_ROOMS, "hal/sim/render/truth_images.h": TRUTH_ROOMS}
 INCLUDE = re.compile(r'^\s*#include\s+([<"])([^>"]+)[>"]')
 
 

@@ -1,6 +1,8 @@
-#include "hal/sim/render/truth_images.h"
+#include "hal/sim/truth.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -147,6 +149,93 @@ TEST(Truth, ProbeShadowsLieOnTheLineThroughLampAndApex) {
     const Vector3d outward = (shadow.p_WS - foot).normalized();
     EXPECT_EQ(green(shadow.p_WS - 0.025 * outward), 0.0F);
     EXPECT_GT(green(shadow.p_WS + 0.006 * outward), 1.0F);
+  }
+}
+
+// The tick as a whole: without an image having been drawn, and the same whatever was asked before.
+TEST(Truth, OfATickNeedsNoImage) {
+  Hall hall;
+  RobotBody body;
+  body.name = "looker";
+  body.has_board = true;
+  body.camera_down_rad = degrees(20);
+  const int robot = add_robot(hall.scene, body);
+  const Pose X_WR = pose_at({1.6, 1.4, 0}, -0.3);
+  const Pose X_WC = X_WR * mount_of(hall.scene.robots[0]);
+  const SceneState state = state_at(hall.scene, 0.5, {}, {X_WR});
+  const auto renderer = renderer_for(hall.scene, CameraModel().scaled_to(160, 120));
+
+  const Truth truth = truth_at(*renderer, state, X_WC, {robot, 0, true, {}});
+
+  ASSERT_EQ(truth.actors.size(), 1U) << "robots are not actors";
+  EXPECT_EQ(truth.actors[0].name, "ball");
+  EXPECT_TRUE(truth.actors[0].present);
+  EXPECT_LT((truth.actors[0].p_WF - Vector3d(2.5, 0, 0)).norm(), 1e-9);
+  ASSERT_EQ(truth.lamps.size(), 1U);
+  EXPECT_TRUE(truth.lamps[0].on());
+  ASSERT_TRUE(truth.X_WR);
+  EXPECT_LT((truth.X_WR->translation() - X_WR.translation()).norm(), 1e-12);
+  EXPECT_EQ(truth.probes.size(), 2U);
+  ASSERT_TRUE(truth.masks);
+
+  RadianceImage image;
+  renderer->draw(state, X_WC, image);
+  const FigureView seen = figure_view(*renderer, state, X_WC, 0, {}, 0);
+  EXPECT_EQ(truth.actors[0].view.visible_px, seen.visible_px);
+  int counted = 0;
+  for (const std::int32_t part : renderer->geometry().part)
+    counted += part >= 0 && hall.scene.parts[static_cast<std::size_t>(part)].figure == 0 ? 1 : 0;
+  EXPECT_EQ(truth.actors[0].view.visible_px, counted) << "as many pixels as the image shows";
+
+  truth_at(*renderer, state_at(hall.scene, 9.0), kEye, {});
+  EXPECT_EQ(truth_csv_row(0, truth_at(*renderer, state, X_WC, {robot, 0, true, {}})), truth_csv_row(0, truth));
+}
+
+TEST(Truth, OfALampThatIsOffHasNoShadows) {
+  Hall hall;
+  RobotBody body;
+  body.has_board = true;
+  const int robot = add_robot(hall.scene, body);
+  hall.scene.lamps[0].switch_name = "lamp";
+  const auto renderer = renderer_for(hall.scene, CameraModel().scaled_to(80, 60));
+  const Truth truth =
+      truth_at(*renderer, state_at(hall.scene, 0.0, {}, {Pose::Identity()}), kEye, {robot, 0, true, {}});
+  EXPECT_FALSE(truth.lamps[0].on());
+  EXPECT_FALSE(truth.masks);
+  ASSERT_EQ(truth.probes.size(), 2U);
+  EXPECT_FALSE(truth.probes[0].visible);
+  EXPECT_EQ(truth.actors[0].view.lit_px, 0);
+}
+
+TEST(TruthCsv, EveryRowHasTheHeadersColumns) {
+  Hall hall;
+  RobotBody body;
+  body.has_board = true;
+  const int robot = add_robot(hall.scene, body);
+  hall.scene.figures[0].name = "ball, \"red\"";
+  const auto columns = [](const std::string& line) {
+    bool quoted = false;
+    int count = 1;
+    for (const char c : line) {
+      quoted = c == '"' ? !quoted : quoted;
+      count += c == ',' && !quoted ? 1 : 0;
+    }
+    return count;
+  };
+  const TruthOptions options{robot, 0, false, {}};
+  const std::string header = truth_csv_header(hall.scene, options);
+  EXPECT_NE(header.find("\"ball, \"\"red\"\".visible_px\""), std::string::npos) << header;
+  const auto renderer = renderer_for(hall.scene, CameraModel().scaled_to(80, 60));
+  for (const bool there : {true, false}) {
+    for (const bool ball : {true, false}) {
+      hall.scene.figures[0].presence = {{0.0, ball, 0}};
+      const auto robots = there ? std::vector<Pose>{pose_at({1.6, 1.4, 0})} : std::vector<Pose>{};
+      const std::string row =
+          truth_csv_row(7, truth_at(*renderer, state_at(hall.scene, 0.25, {}, robots), kEye, options));
+      EXPECT_EQ(columns(row), columns(header)) << row;
+      EXPECT_EQ(row.substr(0, 11), "7,0.250000,");
+      EXPECT_EQ(std::count(row.begin(), row.end(), '\n'), 1);
+    }
   }
 }
 

@@ -72,15 +72,15 @@ FigureView figure_view(Renderer& renderer, const SceneState& state, const Pose& 
   PixelRange visible = nothing(renderer.camera());
   PixelRange whole = nothing(renderer.camera());
   const Vector3f origin = X_WC.translation().cast<float>();
-  const GeometryImage& seen = renderer.geometry();
+  std::vector<int> nearest(static_cast<std::size_t>(renderer.camera().width_px));
   for (int y = reach.top; y < reach.bottom; ++y) {
+    cast_row(renderer, X_WC, reach, y, kSightRays,
+             [&](const PixelRay& ray) { nearest[static_cast<std::size_t>(ray.x)] = ray.met.part; });
     cast_row(renderer, X_WC, reach, y, figure_rays(figure), [&](const PixelRay& ray) {
       if (ray.met.part < 0 || !counts[static_cast<std::size_t>(ray.met.part)]) return;
       ++view.whole_px;
       widen(whole, ray.x, ray.y);
-      const std::int32_t in_front =
-          seen.part[static_cast<std::size_t>(ray.y) * static_cast<std::size_t>(seen.width_px) +
-                    static_cast<std::size_t>(ray.x)];
+      const int in_front = nearest[static_cast<std::size_t>(ray.x)];
       if (in_front < 0 || !counts[static_cast<std::size_t>(in_front)]) return;
       ++view.visible_px;
       widen(visible, ray.x, ray.y);

@@ -55,6 +55,9 @@ class Renderer {
   /// Draws the scene at `state` seen from X_WC.
   void draw(const SceneState& state, const Pose& X_WC, RadianceImage& image);
 
+  /// Moves what moves without drawing: for questions to tracer() about another moment than the last image's.
+  void move_to(const SceneState& state) { tracer_->update(state); }
+
   /// What the last draw() saw at each pixel's centre.
   [[nodiscard]] const GeometryImage& geometry() const { return geometry_; }
 

@@ -26,7 +26,7 @@ struct ShadowMaskOptions {
 ShadowMasks shadow_masks(Renderer& renderer, const SceneState& state, const Pose& X_WC, int lamp,
                          const ShadowMaskOptions& options = {});
 
-/// What the camera sees of a figure, from the last draw().
+/// What the camera sees of a figure.
 struct FigureView {
   bool in_view = false;  ///< at least one pixel.
   Box visible;           ///< around the pixels that are seen, [px].
@@ -36,6 +36,8 @@ struct FigureView {
   int lit_px = 0;    ///< of the visible ones, those that see the centre of the lamp (moving things cast shadows here).
 };
 
+/// The renderer stands at `state`: after draw() or move_to() with it.
+///
 /// \param figure  index into the scene's figures.  \param parts  which of its parts count (such as a head); empty: all.
 /// \param lamp  whose light `lit_px` means; -1: none is asked for.
 FigureView figure_view(Renderer& renderer, const SceneState& state, const Pose& X_WC, int figure,
@@ -52,7 +54,7 @@ struct ProbeShadow {
   bool visible = false;    ///< on the board, unblocked, in the image and not hidden by a cone.
 };
 
-/// One entry per cone of the robot's board, in its order; none for a robot without a board.
+/// One entry per cone of the robot's board, in its order; none for a robot without a board. The renderer stands at `state`.
 std::vector<ProbeShadow> probe_shadows(Renderer& renderer, const SceneState& state, const Pose& X_WC, int robot,
                                        int lamp);
 
