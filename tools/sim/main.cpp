@@ -1,0 +1,154 @@
+// cgsr-sim: what `cgsr sim` starts. Looks at simulated worlds and writes them down; the ray tracer lives here, not in the robot's program.
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "tools/sim/export_world.h"
+#include "tools/sim/render_world.h"
+#include "tools/sim/words.h"
+#include "tools/sim/world_file.h"
+
+namespace cgsr::sim {
+namespace {
+
+constexpr int kUsage = 2;
+
+int complain(const Error& error) {
+  fmt::print(stderr, "error: {}\n", error.message);
+  return 1;
+}
+
+struct RenderWords {
+  std::string world, pose, from, to, size;
+  double at_s = 0.0;
+  bool no_noise = false;
+  bool no_lens = false;
+  PictureRequest request;
+  PictureFiles files;
+};
+
+struct ExportWords {
+  std::string world, folder;
+  ExportRequest request;
+};
+
+void add_world(CLI::App& command, std::string& world) {
+  command.add_option("--world", world, "a name in config/worlds, such as home, or a file")->required();
+}
+
+void add_render(CLI::App& command, RenderWords& words) {
+  add_world(command, words.world);
+  auto* pose = command.add_option("--pose", words.pose, "tx,ty,tz,qw,qx,qy,qz: the camera in the world, metres");
+  auto* from = command.add_option("--from", words.from, "X,Y,Z: the camera, metres")->excludes(pose);
+  auto* to =
+      command.add_option("--to", words.to, "X,Y,Z: what is in the middle of the image")->excludes(pose)->needs(from);
+  from->needs(to);
+  auto* view =
+      command.add_option("--view", words.request.view, "a view that the world's file names")->excludes(pose, from);
+  command
+      .add_option("--robot", words.request.robot, "whose camera; without a place of its own the picture is its view")
+      ->excludes(view);
+  command.add_option("--time", words.at_s, "when, seconds")->check(CLI::Range(0.0, 86400.0));
+  command.add_option("--on", words.request.on, "switch this line on")->allow_extra_args(false);
+  command.add_option("--off", words.request.off, "switch this line off: room lamps are on, a robot's own are off")
+      ->allow_extra_args(false);
+  command.add_option("--seed", words.request.seed, "of the noise")->capture_default_str();
+  command.add_option("--size", words.size, "WIDTHxHEIGHT; the camera's 640x480 when not given");
+  command.add_flag("--no-noise", words.no_noise, "without the sensor's noise");
+  command.add_flag("--no-lens", words.no_lens, "without the lens's distortion");
+  command.add_option("--edge-samples", words.request.edge_samples, "rays for a pixel at an edge")
+      ->check(CLI::IsMember({1, 4, 16}))
+      ->capture_default_str();
+  command.add_option("--threads", words.request.threads, "the picture does not depend on it")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command.add_option("--output", words.files.output, "the picture, .png")->required();
+  command.add_option("--truth", words.files.truth_folder,
+                     "also write what is there into this folder: truth.csv, depth, parts, shadow masks");
+  command.add_option("--lamp", words.files.lamp, "whose shadows --truth means; the first one's when not given");
+}
+
+void add_export(CLI::App& command, ExportWords& words) {
+  add_world(command, words.world);
+  command.add_option("--output", words.folder, "folder")->required();
+  command.add_option("--robot", words.request.robot, "whose camera, mount and probes; the first one's when not given");
+  command.add_option("--seed", words.request.seed, "of the errors")->capture_default_str();
+  command.add_option("--errors", words.request.error_factor, "so many times the errors that are usual; 0: none")
+      ->capture_default_str();
+}
+
+int render(RenderWords& words, bool time_given) {
+  const auto world = load_world(words.world);
+  if (!world) return complain(world.error());
+  if (!words.pose.empty() || !words.from.empty()) {
+    const auto X_WC = words.pose.empty() ? parse_view(words.from, words.to) : parse_pose(words.pose);
+    if (!X_WC) return complain(X_WC.error());
+    words.request.X_WC = *X_WC;
+  }
+  if (!words.size.empty()) {
+    const auto size = parse_image_size(words.size);
+    if (!size) return complain(size.error());
+    words.request.size = *size;
+  }
+  if (time_given) words.request.at_s = words.at_s;
+  words.request.noise = !words.no_noise;
+  words.request.lens = !words.no_lens;
+  const auto done = render_world(*world, words.request, words.files);
+  return done ? 0 : complain(done.error());
+}
+
+int export_to_folder(const ExportWords& words) {
+  const auto done = load_world(words.world).and_then([&](const World& world) {
+    return export_world(world, words.request, words.folder);
+  });
+  return done ? 0 : complain(done.error());
+}
+
+int info(const std::string& name) {
+  const auto world = load_world(name);
+  if (!world) return complain(world.error());
+  fmt::print("{}", describe_world(*world));
+  return 0;
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"Simulated worlds: look at them, write them down.", "cgsr sim"};
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  RenderWords render_words;
+  CLI::App* render_command = app.add_subcommand("render", "a picture of a world, from any place at any time");
+  add_render(*render_command, render_words);
+  ExportWords export_words;
+  CLI::App* export_command = app.add_subcommand(
+      "export", "a world's geometry as a map, and a calibrated copy of it, camera, mount and probes");
+  add_export(*export_command, export_words);
+  std::string world;
+  CLI::App* info_command =
+      app.add_subcommand("info", "what is in a world: robots, views, lamps and their lines, actors");
+  add_world(*info_command, world);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& wrong) {
+    return app.exit(wrong) == 0 ? 0 : kUsage;
+  }
+  if (*render_command) return render(render_words, render_command->count("--time") > 0);
+  if (*export_command) return export_to_folder(export_words);
+  return info(world);
+}
+
+}  // namespace
+}  // namespace cgsr::sim
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  try {
+    return cgsr::sim::run_command_line(argc, argv);
+  } catch (const std::exception& surprise) {
+    return cgsr::sim::complain(cgsr::Error{std::string("unexpected: ") + surprise.what()});
+  }
+}
