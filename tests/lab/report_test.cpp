@@ -46,6 +46,31 @@ TEST(ReportHtml, IsOnePageWithoutScriptAndWithMarkupEscaped) {
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 
+Report sample_with_stripe() {
+  Report report = sample();
+  report.stripes = {{"light",
+                     {{"estimated", {color::Light{1.0, 0.8, 0.6}, std::nullopt}},
+                      {"true", {color::Light{0.9, 0.8, 0.7}, color::Light{0.6, 0.7, 0.8}}}}}};
+  return report;
+}
+
+TEST(Stripe, StandsInTheTextStepByStepWithNoneWhereNothingWasSeen) {
+  const std::string text = to_text(sample_with_stripe());
+
+  EXPECT_NE(text.find("0  1.00 0.80 0.60    0.90 0.80 0.70"), std::string::npos) << text;
+  EXPECT_NE(text.find("1  none              0.60 0.70 0.80"), std::string::npos) << text;
+}
+
+TEST(Stripe, IsDrawnAsItsColorsAndLeavesAGapWhereNothingWasSeen) {
+  const std::string html = to_html({sample_with_stripe()});
+
+  EXPECT_NE(html.find("rgb(100.0%,80.0%,60.0%)"), std::string::npos);
+  EXPECT_NE(html.find("rgb(60.0%,70.0%,80.0%)"), std::string::npos);
+  std::size_t colors = 0;
+  for (auto at = html.find("rgb("); at != std::string::npos; at = html.find("rgb(", at + 1)) ++colors;
+  EXPECT_EQ(colors, 3U);
+}
+
 TEST(MeanRow, SharesThatAreAllZeroStillHaveAnUpperBound) {
   const Row row = mean_row("r", "precision", "", std::vector<double>(20, 0.0), 1);
 

@@ -126,6 +126,29 @@ std::string to_svg(const Plot& plot) {
   return svg + "</svg></figure>\n";
 }
 
+/// As wide as the plots' frame, so that it lies under its seconds.
+std::string to_svg(const Stripe& stripe) {
+  constexpr double kBand = 22, kGap = 4;
+  const double height = static_cast<double>(stripe.bands.size()) * (kBand + kGap);
+  std::string svg =
+      fmt::format(R"(<figure><figcaption><b>{}</b></figcaption><svg width="{}" height="{}" viewBox="0 0 {} {}">)",
+                  escaped(stripe.title), kWidth, height, kWidth, height);
+  for (std::size_t i = 0; i < stripe.bands.size(); ++i) {
+    const auto& [name, colors] = stripe.bands[i];
+    const double y = static_cast<double>(i) * (kBand + kGap);
+    const double step = (kWidth - kRight - kLeft) / static_cast<double>(colors.size());
+    for (std::size_t k = 0; k < colors.size(); ++k) {
+      if (!colors[k]) continue;
+      svg += fmt::format(
+          R"svg(<rect x="{:.1f}" y="{}" width="{:.1f}" height="{}" fill="rgb({:.1f}%,{:.1f}%,{:.1f}%)"/>)svg",
+          kLeft + static_cast<double>(k) * step, y, step + 0.2, kBand, 100.0 * colors[k]->r, 100.0 * colors[k]->g,
+          100.0 * colors[k]->b);
+    }
+    svg += fmt::format(R"(<text x="{}" y="{}">{}</text>)", kWidth - kRight + 10, y + 15, escaped(name));
+  }
+  return svg + "</svg></figure>\n";
+}
+
 std::string cell(const Row* row) {
   if (row == nullptr) return "<td></td>";
   std::string small =
@@ -149,6 +172,7 @@ std::string section(const Report& report) {
   }
   html += "</table>\n";
   for (const Plot& plot : report.plots) html += to_svg(plot);
+  for (const Stripe& stripe : report.stripes) html += to_svg(stripe);
   if (!report.notes.empty()) {
     html += "<ul>";
     for (const std::string& note : report.notes) html += fmt::format("<li>{}</li>", escaped(note));

@@ -56,6 +56,25 @@ std::string in_words(const Row* row) {
   return words;
 }
 
+namespace {
+
+/// A line per step, a column per band.
+std::string to_text(const Stripe& stripe) {
+  std::string text = fmt::format("  {}\n  {:>4}", stripe.title, "");
+  for (const auto& band : stripe.bands) text += fmt::format("  {:16}", band.name);
+  for (std::size_t step = 0; step < stripe.bands.front().colors.size(); ++step) {
+    text += fmt::format("\n  {:4}", step);
+    for (const auto& band : stripe.bands) {
+      const auto& light = band.colors[step];
+      text += light ? fmt::format("  {:.2f} {:.2f} {:.2f}  ", light->r, light->g, light->b)
+                    : fmt::format("  {:16}", "none");
+    }
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string to_text(const Report& report) {
   const Table table = pivot(report);
   std::vector<std::vector<std::string>> cells{{""}};
@@ -76,6 +95,7 @@ std::string to_text(const Report& report) {
     for (std::size_t i = 0; i < line.size(); ++i) words += fmt::format("{:{}}  ", line[i], widths[i]);
     text += "  " + words.substr(0, words.find_last_not_of(' ') + 1) + "\n";
   }
+  for (const Stripe& stripe : report.stripes) text += to_text(stripe);
   for (const std::string& note : report.notes) text += fmt::format("  - {}\n", note);
   return text;
 }

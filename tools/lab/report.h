@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "pipeline/color/light.h"
 #include "tools/lab/statistics.h"
 
 namespace cgsr::lab {
@@ -39,6 +40,16 @@ struct Plot {
   std::vector<Curve> curves;
 };
 
+/// Colours of light in a row of equal steps, band under band, as in the dissertation's Figure 3.3.
+struct Stripe {
+  struct Band {
+    std::string name;
+    std::vector<std::optional<color::Light>> colors;  ///< 0 to 1, encoded; nothing: none was there to tell
+  };
+  std::string title;
+  std::vector<Band> bands;  ///< equally long
+};
+
 /// A table or figure, reproduced.
 struct Report {
   std::string name;
@@ -48,6 +59,7 @@ struct Report {
   std::vector<Row> rows;
   std::vector<Plot> plots;
   std::vector<std::string> notes;  ///< what a reader has to know to read the figures rightly; a sentence each
+  std::vector<Stripe> stripes = {};
 };
 
 /// A row measured as the mean of independent trials.
