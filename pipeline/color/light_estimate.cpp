@@ -6,8 +6,6 @@
 namespace cgsr::color {
 namespace {
 
-constexpr imaging::PatchSize kPatch{32, 32};
-constexpr double kMargin = 0.1;
 constexpr int kRounds = 4;
 constexpr double kSaturated = 250.0 / 255.0;
 constexpr double kBlack = 4.0 / 255.0;
@@ -53,24 +51,17 @@ double gain_of(const std::array<double, ChannelQuantiles::kCount>& learned,
 
 }  // namespace
 
-ChannelQuantiles channel_quantiles(const imaging::Pyramid& image, const Box& box) {
-  const Box inner{box.x + kMargin * box.width, box.y + kMargin * box.height, box.width * (1.0 - 2.0 * kMargin),
-                  box.height * (1.0 - 2.0 * kMargin)};
-  std::array<std::uint8_t, kPatch.width_px * kPatch.height_px> y;
-  std::array<std::uint8_t, kPatch.width_px * kPatch.height_px> u;
-  std::array<std::uint8_t, kPatch.width_px * kPatch.height_px> v;
-  image.sample_luma(inner, kPatch, y);
-  image.sample_chroma(inner, kPatch, u, v);
-
+ChannelQuantiles channel_quantiles(const ObjectView& view) {
   std::array<Histogram, 3> histograms{};
-  for (std::size_t i = 0; i < y.size(); ++i) {
-    const auto rgb = imaging::rgb_of_yuv(y[i], u[i], v[i]);
+  for (std::size_t i = 0; i < view.y.size(); ++i) {
+    const auto rgb = imaging::rgb_of_yuv(view.y[i], view.u[i], view.v[i]);
     ++histograms[0][static_cast<std::size_t>(rgb.r * 255.0)];
     ++histograms[1][static_cast<std::size_t>(rgb.g * 255.0)];
     ++histograms[2][static_cast<std::size_t>(rgb.b * 255.0)];
   }
   ChannelQuantiles quantiles;
-  for (std::size_t k = 0; k < 3; ++k) quantiles.values[k] = quantiles_of(histograms[k], static_cast<int>(y.size()));
+  for (std::size_t k = 0; k < 3; ++k)
+    quantiles.values[k] = quantiles_of(histograms[k], static_cast<int>(view.y.size()));
   return quantiles;
 }
 

@@ -4,19 +4,17 @@
 
 #include "pipeline/color/color_model.h"
 #include "pipeline/color/light.h"
-#include "pipeline/imaging/pyramid.h"
-#include "platform/box.h"
+#include "pipeline/color/object_view.h"
 
 namespace cgsr::color {
 
-/// Where the brightness of each channel lies inside a box: 32 quantiles of R, G and B in [0, 1].
+/// Where the brightness of each channel of a view lies: 32 quantiles of R, G and B in [0, 1].
 struct ChannelQuantiles {
   static constexpr std::size_t kCount = 32;
   std::array<std::array<double, kCount>, 3> values{};
 };
 
-/// \param box  in camera pixels; its outer tenth is left out, where the surroundings look in.
-ChannelQuantiles channel_quantiles(const imaging::Pyramid& image, const Box& box);
+ChannelQuantiles channel_quantiles(const ObjectView& view);
 
 /// The diagonal model between two sights of the same surface: per channel the factor g that makes seen = g * learned, by iteratively
 /// reweighted least squares (L1) over the quantiles, without those that are cut off or black. Finer than the grid of lights that

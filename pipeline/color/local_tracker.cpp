@@ -98,6 +98,7 @@ void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
   shape_.begin(features_, std::sqrt(kGrid / reach_x_ * kGrid / reach_y_));
   scale_.begin(image, box);
   colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+  learned_colors_ = colors_;
   remember(image, box);
 }
 
@@ -112,22 +113,27 @@ void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
 void LocalTracker::forget() {
   shape_.forget();
   scale_.forget();
-  colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+  colors_ = learned_colors_;
 }
 
 LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box) {
-  return look_with(colors_, image, box);
+  take_colors(image, box, patch_);
+  return answer_from_patch(colors_, box);
 }
 
 LocalAnswer LocalTracker::look_under(const Light& gain, const imaging::Pyramid& image, const Box& box) {
-  relit_ = learned_;
-  relight(relit_, gain);
-  trial_colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
-  return look_with(trial_colors_, image, box);
+  take_colors(image, box, patch_);
+  relight(patch_, without_light({1.0, 1.0, 1.0}, gain));
+  return answer_from_patch(learned_colors_, box);
 }
 
-LocalAnswer LocalTracker::look_with(const ColorLikelihood& colors, const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, patch_);
+void LocalTracker::believe_light(const Light& gain) {
+  relit_ = learned_;
+  relight(relit_, gain);
+  colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+}
+
+LocalAnswer LocalTracker::answer_from_patch(const ColorLikelihood& colors, const Box& box) {
   take_features(patch_);
   RealGrid shape;
   shape_.respond(features_, shape);

@@ -78,11 +78,12 @@ class LocalTracker {
   /// Keeps what surrounds `box` now, for follow_light in the next image.
   void remember(const imaging::Pyramid& image, const Box& box);
 
-  /// The same under a light that is `gain` times that of the learned image: for a first sight, or one after a loss.
+  /// The same as look, by what begin() learned and under a light that is `gain` times that of the learned image: for a first sight, or
+  /// one after a loss. The gain is taken out of what is seen, so that shape and colours are those that were learned.
   LocalAnswer look_under(const Light& gain, const imaging::Pyramid& image, const Box& box);
 
-  /// Believes the light of the last look_under: from now on the object's colours are those under it.
-  void believe_light() { std::swap(colors_, trial_colors_); }
+  /// From now on the object's colours are the learned ones under a light `gain` times the learned image's.
+  void believe_light(const Light& gain);
 
  private:
   static constexpr int kPatch_px = 64;  ///< two pixels to a cell of the filter.
@@ -91,7 +92,7 @@ class LocalTracker {
   [[nodiscard]] Box object_in_patch(double margin) const;
   void take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const;
   void take_features(const ColorPatch& patch);
-  LocalAnswer look_with(const ColorLikelihood& colors, const imaging::Pyramid& image, const Box& box);
+  LocalAnswer answer_from_patch(const ColorLikelihood& colors, const Box& box);
   void score_colors(const ColorLikelihood& colors, imaging::RealGrid& score);
 
   LocalParameters parameters_;
@@ -101,7 +102,7 @@ class LocalTracker {
   CorrelationFilter shape_;
   ScaleFilter scale_;
   ColorLikelihood colors_;
-  ColorLikelihood trial_colors_;
+  ColorLikelihood learned_colors_;  ///< as begin() learned them.
   ColorPatch patch_;
   ColorPatch learned_;     ///< of the first image.
   ColorPatch remembered_;  ///< of the last image in which it was seen.

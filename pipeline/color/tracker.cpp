@@ -1,10 +1,12 @@
 #include "pipeline/color/tracker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "pipeline/color/box_divergence.h"
+#include "pipeline/color/color_agreement.h"
 #include "pipeline/color/light_estimate.h"
 #include "pipeline/color/window_search.h"
 
@@ -13,12 +15,6 @@ namespace {
 
 constexpr double kLargestGrowth = 1.25;  // from one image to the next
 constexpr int kRefinements = 3;
-constexpr double kSamePlace = 0.5;  // boxes that overlap by more are the same answer
-
-double overlap(const Box& a, const Box& b) {
-  const double shared = intersection(a, b).area();
-  return shared / (a.area() + b.area() - shared);
-}
 
 Box centred_on(const Box& place, double width, double height) {
   return {place.x + 0.5 * (place.width - width), place.y + 0.5 * (place.height - height), width, height};
@@ -40,10 +36,16 @@ Box with_centre_inside(Box box, int width_px, int height_px) {
 
 }  // namespace
 
-/// A place for the object, with everything that is known in favour of it.
+/// A place for the object, with what is known in favour of it.
 struct Place {
   LocalAnswer local;
   double divergence = 0.0;
+};
+
+/// The colours of a place, against the learned ones.
+struct Tint {
+  Light gain;              ///< of the light, from the learned image's.
+  double agreement = 0.0;  ///< ColorAmounts::agreement with that light taken out.
 };
 
 struct Tracker::State {
@@ -58,19 +60,23 @@ struct Tracker::State {
   }
 
   void learn_from_model();
+  void keep_colors(const ObjectView& view);
   SearchResult search_all(const imaging::ReducedImage& reduced, WorkBudget& budget);
   TrackedObject track_plain(const SearchResult& matches) const;
   TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
   Place look(const imaging::ReducedImage& reduced, const Box& box);
-  [[nodiscard]] bool lost() const {
-    return std::max(weak_images, foreign_images) >= parameters.doubt.lost_after_images;
+  [[nodiscard]] Tint tint(const Box& at) const;
+  /// Where it will come back, it may be nearer or farther: one size after the other, in different images.
+  [[nodiscard]] double lost_scale() const {
+    constexpr std::array kScales{1.0, 0.7, 1.4};
+    return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
   }
+  [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.lost_after_images; }
   void start_again();
   [[nodiscard]] bool is_weak(const Place& place) const;
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
-  bool jump(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
-  TrackedObject answer(const Box& box, double divergence_of_box);
+  [[nodiscard]] TrackedObject answer(const Light& gain, double divergence_of_box) const;
 
   ColorModel model;
   TrackParameters parameters;
@@ -79,6 +85,7 @@ struct Tracker::State {
   imaging::Pyramid pyramid;
   LocalTracker local;
   ChannelQuantiles learned_quantiles;
+  ColorAmounts learned_amounts;
   Light learned_light;
 
   bool located = false;  ///< `box` is where the object was in the last image.
@@ -87,7 +94,8 @@ struct Tracker::State {
   double mean_divergence = 0.0;
   int images_since_sight = 0;
   int weak_images = 0;     ///< in a row.
-  int foreign_images = 0;  ///< in a row.
+  int images_lost = 0;     ///< in a row.
+  int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
   double first_divergence = 0.0;
 };
@@ -100,16 +108,22 @@ void Tracker::State::learn_from_model() {
   imaging::Pyramid patch(sample.width_px, sample.height_px);
   patch.build(sample.view());
   local.begin(patch, sample.window);
-  learned_quantiles = channel_quantiles(patch, sample.window);
+  keep_colors(view_object(patch, sample.window));
   learned_light = sample.light;
   const LocalAnswer itself = local.look(patch, sample.window);
   first_score = itself.score;
   mean_score = first_score;
 }
 
+void Tracker::State::keep_colors(const ObjectView& view) {
+  learned_quantiles = channel_quantiles(view);
+  learned_amounts = ColorAmounts(view);
+}
+
 SearchResult Tracker::State::search_all(const imaging::ReducedImage& reduced, WorkBudget& budget) {
   SearchRequest request;
   const bool plain = parameters.mode == TrackMode::kPlain;
+  if (!plain && !located) box = centred_on(box, model.width_px * lost_scale(), model.height_px * lost_scale());
   request.width_px = plain ? model.width_px : box.width;
   request.height_px = plain ? model.height_px : box.height;
   request.max_divergence = parameters.max_divergence;
@@ -126,7 +140,7 @@ TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
 }
 
 /// The whole image is searched in any case. Where the object was, the local tracker says how it moved; what it says is doubted by three
-/// measures together, and then the search's best windows stand against it: a prior, not a cage.
+/// measures together, and then the search's best windows are looked at as if for the first time: a prior, not a cage.
 TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
                                          WorkBudget& budget) {
   Place place;
@@ -134,25 +148,30 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   if (located && !lost()) {
     local.follow_light(pyramid);
     place = look(reduced, box);
-    sure = !is_weak(place) || jump(reduced, matches, budget, place);
+    sure = !is_weak(place) || find(reduced, matches, budget, place);
     weak_images = sure ? 0 : weak_images + 1;
-    foreign_images = place.divergence > parameters.doubt.foreign_divergence ? foreign_images + 1 : 0;
-    if (lost()) {
-      if (foreign_images > 0) start_again();
-      return {};
-    }
+    if (lost()) return {};
   } else {
     sure = (located && stayed(reduced, place)) || find(reduced, matches, budget, place);
-    if (!sure) return {};
+    if (!sure) {
+      ++images_lost;
+      return {};
+    }
     located = true;
+    images_lost = 0;
     weak_images = 0;
     foreign_images = 0;
   }
 
   Box now = place.local.box;
   if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.size_limit);
-  now = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
-  box = now;
+  box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
+  const Tint seen = tint(box);
+  foreign_images = seen.agreement < parameters.doubt.foreign_agreement ? foreign_images + 1 : 0;
+  if (foreign_images >= parameters.doubt.foreign_images) {
+    start_again();
+    return {};
+  }
   if (sure) {
     local.learn(pyramid, box);
     const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
@@ -161,7 +180,14 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   }
   ++images_since_sight;
   local.remember(pyramid, box);
-  return answer(box, place.divergence);
+  return answer(seen.gain, place.divergence);
+}
+
+Tint Tracker::State::tint(const Box& at) const {
+  const ObjectView view = view_object(pyramid, at);
+  const Light gain = light_gain(learned_quantiles, channel_quantiles(view));
+  const ColorAmounts seen(relit(view, without_light({1.0, 1.0, 1.0}, gain)));
+  return {gain, learned_amounts.agreement(seen)};
 }
 
 Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) {
@@ -171,8 +197,9 @@ Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) 
 
 bool Tracker::State::is_weak(const Place& place) const {
   const DoubtParameters& doubt = parameters.doubt;
-  return images_since_sight >= doubt.warm_up_images && place.local.sharpness < doubt.weak_sharpness &&
-         place.local.score < doubt.weak_score * mean_score &&
+  const bool warm = images_since_sight >= doubt.warm_up_images;
+  const double expected = warm ? doubt.weak_score * mean_score : doubt.found_score * first_score;
+  return place.local.sharpness < doubt.weak_sharpness && place.local.score < expected &&
          place.divergence > mean_divergence + doubt.weak_divergence;
 }
 
@@ -181,7 +208,8 @@ bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) 
   const DoubtParameters& doubt = parameters.doubt;
   place = look(reduced, box);
   return place.local.sharpness >= doubt.stay_sharpness && place.local.score >= doubt.stay_score * mean_score &&
-         place.divergence <= mean_divergence + doubt.weak_divergence;
+         place.divergence <= mean_divergence + doubt.weak_divergence &&
+         tint(place.local.box).agreement >= doubt.foreign_agreement;
 }
 
 /// What the local tracker followed was not the object: it forgets what it learned from it.
@@ -193,58 +221,43 @@ void Tracker::State::start_again() {
   mean_divergence = first_divergence;
 }
 
-/// \return whether one of the search's windows is more credible than `place`, which it then replaces.
-bool Tracker::State::jump(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
-                          Place& place) {
-  const DoubtParameters& doubt = parameters.doubt;
-  bool jumped = false;
-  for (int i = 0; i < matches.count && budget.grant(); ++i) {
-    const Box start = centred_on(matches.matches[static_cast<std::size_t>(i)].box, box.width, box.height);
-    if (overlap(start, place.local.box) > kSamePlace) continue;
-    const Place other = look(reduced, start);
-    if (other.local.score <= place.local.score || other.local.sharpness <= place.local.sharpness) continue;
-    if (other.divergence >= place.divergence - doubt.jump_divergence) continue;
-    if (other.local.sharpness <= doubt.jump_sharpness || other.local.score <= doubt.jump_score * mean_score) continue;
-    place = other;
-    jumped = true;
-  }
-  return jumped;
-}
-
-/// First sight, or sight again after a loss: each window of the search is looked at under its own light.
+/// First sight, sight again after a loss, or elsewhere: each window of the search is looked at under its own light.
+/// \return whether one of them is surely the object; else `place` stays as it is.
 bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
                           Place& place) {
+  LocalAnswer best;
   Light gain;
   bool any = false;
   for (int i = 0; i < matches.count && budget.grant(); ++i) {
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
-    const Light its_gain = light_gain(learned_quantiles, channel_quantiles(pyramid, window));
-    const LocalAnswer seen = local.look_under(its_gain, pyramid, centred_on(window, model.width_px, model.height_px));
-    if (any && seen.score <= place.local.score) continue;
-    place.local = seen;
+    const Light its_gain = light_gain(learned_quantiles, channel_quantiles(view_object(pyramid, window)));
+    const LocalAnswer seen = local.look_under(its_gain, pyramid, centred_on(window, box.width, box.height));
+    if (any && seen.score <= best.score) continue;
+    best = seen;
     gain = its_gain;
     any = true;
   }
   if (!any) return false;
+  Tint seen{gain, 0.0};
   for (int round = 0; round < kRefinements && budget.grant(); ++round) {
-    place.local = local.look_under(gain, pyramid, place.local.box);
-    place.local.box = grown(place.local.box, local.growth(pyramid, place.local.box), model, parameters.size_limit);
-    gain = light_gain(learned_quantiles, channel_quantiles(pyramid, place.local.box));
+    best = local.look_under(seen.gain, pyramid, best.box);
+    best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.size_limit);
+    seen = tint(best.box);
   }
-  place.divergence = divergence.of(reduced, place.local.box).divergence;
-  if (place.local.sharpness < parameters.doubt.found_sharpness) return false;
-  if (place.local.score < parameters.doubt.found_score * first_score) return false;
-  if (place.divergence > parameters.max_divergence) return false;
-  local.believe_light();
+  const DoubtParameters& doubt = parameters.doubt;
+  const double its_divergence = divergence.of(reduced, best.box).divergence;
+  if (best.sharpness < doubt.found_sharpness || best.score < doubt.found_score * first_score) return false;
+  if (seen.agreement < doubt.found_agreement || its_divergence > parameters.max_divergence) return false;
+  place = {best, its_divergence};
+  local.believe_light(seen.gain);
   images_since_sight = 0;
   return true;
 }
 
-TrackedObject Tracker::State::answer(const Box& at, double divergence_of_box) {
-  const Light gain = light_gain(learned_quantiles, channel_quantiles(pyramid, at));
+TrackedObject Tracker::State::answer(const Light& gain, double divergence_of_box) const {
   const Light exact = lit(learned_light, gain);
   const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
-  return {true, intersection(at, image), divergence_of_box, nearest_of(model, exact), exact};
+  return {true, intersection(box, image), divergence_of_box, nearest_of(model, exact), exact};
 }
 
 Result<Tracker> Tracker::create(const ColorModel& model, const TrackParameters& parameters, int max_width_px,
@@ -278,7 +291,7 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   State& s = *state_;
   s.pyramid.build(image);
   s.local.begin(s.pyramid, box);
-  s.learned_quantiles = channel_quantiles(s.pyramid, box);
+  s.keep_colors(view_object(s.pyramid, box));
   const Place itself = s.look(reduced, box);
   s.first_score = itself.local.score;
   s.first_divergence = s.divergence.of(reduced, box).divergence;

@@ -34,33 +34,30 @@ struct DoubtParameters {
   double weak_sharpness = 8.0;
   double weak_score = 0.8;
   double weak_divergence = 0.1;
-  double foreign_divergence = 0.4;
-  double jump_sharpness = 7.0;
-  double jump_score = 0.8;
-  double jump_divergence = 0.05;
+  double foreign_agreement = 0.62;
+  int foreign_images = 5;
   int lost_after_images = 3;
   double stay_sharpness = 8.0;
   double stay_score = 0.7;
   double found_sharpness = 14.0;
-  double found_score = 0.4;
+  double found_score = 0.45;
+  double found_agreement = 0.86;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("warm_up_images", self.warm_up_images, {0, 1000}, "",
-                 "images after a first sight in which nothing is doubted");
+                 "images after a first sight in which the means are not yet trusted: a first sight's own conditions "
+                 "count instead");
     visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "", "share of each sure image in the running means");
     visit.number("weak_sharpness", self.weak_sharpness, {0.0, 50.0}, "",
                  "a peak below this, with the next two, is doubted");
     visit.number("weak_score", self.weak_score, {0.0, 2.0}, "", "a score below this share of its mean");
     visit.number("weak_divergence", self.weak_divergence, {0.0, 0.7}, "nat",
                  "a divergence above its mean by more than this");
-    visit.number(
-        "foreign_divergence", self.foreign_divergence, {0.0, 0.7}, "nat",
-        "a box farther than this from every learned histogram holds something else, however sure the local tracker is");
-    visit.number("jump_sharpness", self.jump_sharpness, {0.0, 50.0}, "",
-                 "what a place elsewhere needs to be believed instead");
-    visit.number("jump_score", self.jump_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
-    visit.number("jump_divergence", self.jump_divergence, {0.0, 0.7}, "nat", "and by how much its divergence is lower");
+    visit.number("foreign_agreement", self.foreign_agreement, {0.0, 1.0}, "",
+                 "a box in which more of the learned colours is missing holds something else, however sure the local "
+                 "tracker is");
+    visit.number("foreign_images", self.foreign_images, {1, 1000}, "", "such images in a row end what was followed");
     visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
                  "doubtful images after which the object is lost");
     visit.number("stay_sharpness", self.stay_sharpness, {0.0, 50.0}, "",
@@ -70,6 +67,8 @@ struct DoubtParameters {
                  "what a sight anywhere else needs, as the first one does");
     visit.number("found_score", self.found_score, {0.0, 2.0}, "",
                  "and its score, as a share of what the learned picture itself scores");
+    visit.number("found_agreement", self.found_agreement, {0.0, 1.0}, "",
+                 "and how far it has the learned colours in the learned amounts, its light taken out");
   }
 };
 

@@ -38,7 +38,7 @@ ChannelQuantiles quantiles(test::Painting painting, double noise, std::uint32_t 
   imaging::Pyramid image(160, 120);
   const ImageView view = painting.photograph(noise, seed);
   image.build(view);
-  return channel_quantiles(image, kBox);
+  return channel_quantiles(view_object(image, kBox));
 }
 
 void expect_gain(const Light& found, const Light& gain, double tolerance, int trial) {
@@ -165,7 +165,7 @@ TEST(LightEstimateAlloc, Nothing) {
   imaging::Pyramid image(160, 120);
   image.build(view);
   const cgsr::test::AllocationGuard guard;
-  const auto sight = channel_quantiles(image, kBox);
+  const auto sight = channel_quantiles(view_object(image, kBox));
   const Light gain = light_gain(sight, sight);
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_NEAR(gain.r, 1.0, 1e-9);

@@ -28,8 +28,13 @@ Box moved(double x, double y, double factor = 1.0) {
   return {x, y, kFirst.width * factor, kFirst.height * factor};
 }
 
+struct ThingColors {
+  imaging::Rgb top, middle, bottom, disc;
+};
+constexpr ThingColors kThing{{0.85, 0.15, 0.12}, {0.92, 0.9, 0.88}, {0.12, 0.2, 0.8}, {0.95, 0.8, 0.1}};
+
 /// A red, white and blue thing with a pattern, at any place and size, before a wall with a floor, all under one light.
-test::Painting room(const Box* object, const Light& light = kLearnedLight) {
+test::Painting room(const Box* object, const Light& light = kLearnedLight, const ThingColors& colors = kThing) {
   test::Painting painting(kWidth_px, kHeight_px);
   painting.paint([&](int x, int y) {
     const double grain = 0.03 * std::sin(0.31 * x + 0.11 * y) + 0.02 * std::sin(0.07 * x - 0.43 * y);
@@ -38,17 +43,20 @@ test::Painting room(const Box* object, const Light& light = kLearnedLight) {
     if (object != nullptr && x >= object->x && x < object->x + object->width && y >= object->y &&
         y < object->y + object->height) {
       const double u = (x + 0.5 - object->x) / object->width, v = (y + 0.5 - object->y) / object->height;
-      color = v < 0.35  ? imaging::Rgb{0.85, 0.15, 0.12}
-              : v < 0.6 ? imaging::Rgb{0.92, 0.9, 0.88}
-                        : imaging::Rgb{0.12, 0.2, 0.8};
+      color = v < 0.35 ? colors.top : v < 0.6 ? colors.middle : colors.bottom;
       const bool disc = (u - 0.4) * (u - 0.4) + (v - 0.5) * (v - 0.5) < 0.03;
       const bool bar = u > 0.7 && u < 0.85 && v > 0.1 && v < 0.9;
-      if (disc) color = {0.95, 0.8, 0.1};
+      if (disc) color = colors.disc;
       if (bar) color = {0.1, 0.1, 0.12};
     }
     return lit(color, light);
   });
   return painting;
+}
+
+/// Something of the same shape in other colours, but for its lower third: as two people wear the same trousers.
+test::Painting room_with_another(const Box& object) {
+  return room(&object, kLearnedLight, {{0.1, 0.1, 0.1}, {0.3, 0.3, 0.1}, kThing.bottom, {0.2, 0.2, 0.2}});
 }
 
 /// A tracker with what it needs around it, and images with the noise of a camera.
@@ -112,6 +120,49 @@ TEST(Tracker, StartsWhereItIsToldTheObjectIs) {
   const auto found = bench.see(moved(kFirst.x + 5, kFirst.y - 3));
   ASSERT_TRUE(found.found);
   EXPECT_GT(overlap(found.box, moved(kFirst.x + 5, kFirst.y - 3)), 0.8);
+}
+
+// Scenes that have nothing to do with one another: a film's cut, or a robot that turned fast. What was is no cage.
+TEST(Tracker, FollowsAJumpToTheOtherEndOfTheImageAtOnce) {
+  Bench bench;
+  for (int i = 0; i < 30; ++i) {
+    const Box place = i % 3 == 2 ? moved(250, 150) : i % 3 == 1 ? moved(20, 20) : moved(140, 95);
+    const auto found = bench.see(place);
+    ASSERT_TRUE(found.found) << i;
+    EXPECT_GT(overlap(found.box, place), 0.6) << i;
+  }
+}
+
+TEST(Tracker, SomethingElseInItsPlaceIsNotTheObject) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(kFirst).found) << i;
+  TrackedObject found;
+  for (int i = 0; i < 15; ++i) found = bench.look(room_with_another(kFirst));
+  EXPECT_FALSE(found.found);
+  for (int i = 0; i < 3; ++i) found = bench.see(moved(40, 30));
+  ASSERT_TRUE(found.found) << "and what it saw instead was not learned";
+  EXPECT_GT(overlap(found.box, moved(40, 30)), 0.6);
+}
+
+TEST(Tracker, SomethingElseIsNotTakenForItAtFirstSight) {
+  for (const Box& place : {kFirst, moved(20, 30), moved(230, 100)}) {
+    Bench bench;
+    for (int i = 0; i < 6; ++i) EXPECT_FALSE(bench.look(room_with_another(place)).found) << place.x << ' ' << i;
+  }
+}
+
+// Having left the image, it comes back nearer or farther.
+TEST(TrackerProperty, FindsItAgainInAnotherSize) {
+  for (const double factor : {0.8, 0.9, 1.0, 1.15, 1.3}) {
+    Bench bench;
+    for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.see(kFirst).found) << i;
+    for (int i = 0; i < 8; ++i) bench.see_nothing();
+    const Box place = moved(30, 40, factor);
+    TrackedObject found;
+    for (int i = 0; i < 6; ++i) found = bench.see(place);
+    ASSERT_TRUE(found.found) << factor;
+    EXPECT_GT(overlap(found.box, place), 0.6) << factor;
+  }
 }
 
 TEST(Tracker, DoesNotFindWhatIsNotThere) {
