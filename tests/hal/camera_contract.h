@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <ostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -28,10 +29,11 @@ inline constexpr int kContractImages = 24;
 struct CameraCase {
   std::string name;
   std::function<CameraRig()> make;
+  friend void PrintTo(const CameraCase& one, std::ostream* out) { *out << one.name; }
 };
 
 /// The suite. A test program that includes this header adds an implementation with one line:
-///   INSTANTIATE_TEST_SUITE_P(V4l2, CameraContract, testing::Values(CameraCase{"loopback", make_loopback_camera}), case_name);
+///   INSTANTIATE_TEST_SUITE_P(V4l2, CameraContract, testing::Values(CameraCase{"loopback", make_loopback_camera}), CaseName());
 class CameraContract : public testing::TestWithParam<CameraCase> {
  protected:
   void SetUp() override {

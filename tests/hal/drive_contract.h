@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -23,10 +24,11 @@ struct DriveRig {
 struct DriveCase {
   std::string name;
   std::function<DriveRig()> make;
+  friend void PrintTo(const DriveCase& one, std::ostream* out) { *out << one.name; }
 };
 
 /// The suite. A test program that includes this header adds an implementation with one line:
-///   INSTANTIATE_TEST_SUITE_P(Rmp, DriveContract, testing::Values(DriveCase{"virtual_bus", make_rmp}), case_name);
+///   INSTANTIATE_TEST_SUITE_P(Rmp, DriveContract, testing::Values(DriveCase{"virtual_bus", make_rmp}), CaseName());
 class DriveContract : public testing::TestWithParam<DriveCase> {
  protected:
   void SetUp() override {

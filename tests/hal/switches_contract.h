@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,10 +27,11 @@ struct SwitchesRig {
 struct SwitchesCase {
   std::string name;
   std::function<SwitchesRig()> make;
+  friend void PrintTo(const SwitchesCase& one, std::ostream* out) { *out << one.name; }
 };
 
 /// The suite. A test program that includes this header adds an implementation with one line:
-///   INSTANTIATE_TEST_SUITE_P(Gpiod, SwitchesContract, testing::Values(SwitchesCase{"gpio_sim", make_gpio_sim}), case_name);
+///   INSTANTIATE_TEST_SUITE_P(Gpiod, SwitchesContract, testing::Values(SwitchesCase{"gpio_sim", make_gpio_sim}), CaseName());
 class SwitchesContract : public testing::TestWithParam<SwitchesCase> {
  protected:
   void SetUp() override {

@@ -1,6 +1,7 @@
 #include "tools/lab/trackers.h"
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -10,6 +11,10 @@
 
 namespace cgsr::lab {
 namespace {
+
+void PrintTo(const NamedTracker& tracker, std::ostream* out) {
+  *out << tracker.name;
+}
 
 class BoxTrackerContract : public testing::TestWithParam<NamedTracker> {
  protected:

@@ -164,7 +164,7 @@ Rgb sample(const Texture& texture, const SurfacePoint& at) {
     const Rgb bottom = texel(x0, y0 + 1) + (x - x0) * (texel(x0 + 1, y0 + 1) - texel(x0, y0 + 1));
     return Rgb(top + (y - y0) * (bottom - top));
   };
-  const Rgb fine = bilinear(level);
+  Rgb fine = bilinear(level);
   if (level == last || rest <= 1.0F) return fine;
   return fine + (rest - 1.0F) * (bilinear(level + 1) - fine);
 }

@@ -37,6 +37,7 @@ std::vector<float> normal_quantiles() {
   double variance = 0.0;
   for (const double q : quantiles) variance += q * q / kQuantiles;
   std::vector<float> scaled;
+  scaled.reserve(quantiles.size());
   for (const double q : quantiles) scaled.push_back(static_cast<float>(q / std::sqrt(variance)));
   return scaled;
 }

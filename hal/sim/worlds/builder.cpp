@@ -25,6 +25,7 @@ Rgb linear(const Triple& t) {
 
 std::vector<LightKey> script_of(const std::vector<LightKeySpec>& specs) {
   std::vector<LightKey> script;
+  script.reserve(specs.size());
   for (const LightKeySpec& key : specs) script.push_back({key.at_s, linear(key.factor)});
   return script;
 }

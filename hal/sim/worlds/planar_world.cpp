@@ -113,7 +113,9 @@ void add_clutter(int boxes, bool beside, std::vector<ShapeSpec>& shapes) {
     box.size_m = {0.15 + 0.2 * static_cast<double>(unit(mix(seed, 1U))),
                   0.15 + 0.2 * static_cast<double>(unit(mix(seed, 2U))),
                   0.1 + 0.5 * static_cast<double>(unit(mix(seed, 3U)))};
-    box.position_m = {-2.0 - 0.5 * (i / columns), 0.5 * (i % columns - columns / 2), beside ? 2 * kRaise_m : kRaise_m};
+    const int row = i / columns;
+    const int steps_aside = i % columns - columns / 2;
+    box.position_m = {-2.0 - 0.5 * row, 0.5 * steps_aside, beside ? 2 * kRaise_m : kRaise_m};
     box.heading_deg = 90.0 * static_cast<double>(unit(mix(seed, 4U)));
     shapes.push_back(box);
   }

@@ -36,7 +36,7 @@ Pattern::Pattern(Random random) {
 }
 
 Rgb Pattern::at(double u, double v) const {
-  const Patch* nearest = nullptr;
+  const Patch* nearest = &patches_.front();  // there are always some
   double least = 1e9;
   for (const Patch& patch : patches_) {
     const double distance = (u - patch.u) * (u - patch.u) + (v - patch.v) * (v - patch.v);

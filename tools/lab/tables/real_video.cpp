@@ -35,6 +35,7 @@ using Scores = std::vector<std::vector<ImageScore>>;
 
 std::vector<double> values_of(const std::vector<ImageScore>& scores, const Figure& figure) {
   std::vector<double> values;
+  values.reserve(scores.size());
   for (const ImageScore& score : scores) values.push_back(figure.of(score));
   return values;
 }
