@@ -48,6 +48,10 @@ void HousekeepingTask::step() {
   while (const auto report = links_.reports.pop()) take(*report);
 }
 
+void HousekeepingTask::finish() {
+  if (outputs_.video) note(outputs_.video->close());
+}
+
 void HousekeepingTask::take(const MotionStatus& status) {
   const MotionStatus& before = tally_.last_motion;
   if (tally_.beats > 0 && status.armed != before.armed) spdlog::info("motion: {}", status.armed ? "armed" : "disarmed");

@@ -44,6 +44,9 @@ class HousekeepingTask {
   /// Deals with all that lies in the rings.
   void step();
 
+  /// After the last step: what the video still holds is written; what fails is the tally's problem.
+  void finish();
+
   [[nodiscard]] const RunTally& tally() const { return tally_; }
   [[nodiscard]] const runtime::StageTable& table() const { return table_; }
 

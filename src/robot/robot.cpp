@@ -87,9 +87,17 @@ Result<void> Robot::open_base() {
 }
 
 Result<void> Robot::run(StopRequest& stop) {
-  if (config_.run.pace == config::Pace::kLive) return run_live(stop);
-  run_lock_step(stop);
-  return {};
+  Result<void> done;
+  if (config_.run.pace == config::Pace::kLive) {
+    done = run_live(stop);
+  } else {
+    run_lock_step(stop);
+  }
+  housekeeping_->finish();
+  if (done && links_.camera_lost.load(std::memory_order_acquire)) {
+    return fail(fmt::format("camera: {}", camera_->last_problem()));
+  }
+  return done;
 }
 
 }  // namespace cgsr::robot

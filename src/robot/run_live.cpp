@@ -147,11 +147,9 @@ Result<void> Robot::run_live(StopRequest& stop) {
     silence_told = !silent.empty();
   }
   service::notify_stopping();
-  const bool camera_lost = links_.camera_lost.load(std::memory_order_acquire);
   camera_->stop();
   threads.stop_and_join();
   housekeeping_->step();
-  if (camera_lost) return fail(fmt::format("camera: {}", camera_->last_problem()));
   return {};
 }
 

@@ -1,4 +1,6 @@
 // What a user gets wrong: each is refused with a message that names it, nothing crashes, nothing half-done stays behind.
+#include <sys/resource.h>
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <thread>
@@ -175,6 +177,44 @@ TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {
 TEST_F(BadInputFault, FullDisk) {
   if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   expect_refused(run_cgsr({"track", "--input", images(), "--learn", region_, "--csv", "/dev/full"}), "/dev/full");
+}
+
+/// While it lives, what is started may write so much into a file and no more: a disk that fills up midway.
+class SmallFiles {
+ public:
+  explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    static_cast<void>(std::signal(SIGXFSZ, handler_));
+  }
+  SmallFiles(const SmallFiles&) = delete;
+  SmallFiles& operator=(const SmallFiles&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+// An MP4 of so few pictures is written when it is closed: nothing before that can fail.
+TEST_F(BadInputFault, AVideoThatCannotBeFinishedIsAFailure) {
+  const auto folder = images(8);
+  const auto learned = model();
+  Outcome tracked;
+  Outcome ran;
+  {
+    const SmallFiles limit(8 * 1024);
+    tracked = run_cgsr({"track", "--input", folder, "--learn", region_, "--video", scratch_ / "t.mp4"});
+    ran = run_cgsr({"run", "--config", CGSR_SOURCE_DIR "/config/robots/video.toml", "--input", folder, "--model",
+                    learned, "--video", scratch_ / "r.mp4"});
+  }
+  expect_refused(tracked, "t.mp4");
+  EXPECT_THAT(tracked.errors, HasSubstr("File too large"));
+  EXPECT_EQ(ran.exit_code, 1) << ran.errors;
+  EXPECT_THAT(ran.errors, AllOf(HasSubstr("r.mp4"), HasSubstr("File too large")));
 }
 
 TEST_F(BadInputFault, NoTerminalMeansNoControlCharacters) {

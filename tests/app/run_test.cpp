@@ -86,6 +86,23 @@ TEST_F(RunReplay, LiveRunsEndAfterTheirDurationWithZeroAsTheLastCommand) {
   for (const auto& [name, stage] : run["stages"].items()) EXPECT_GT(stage["worst_us"], 0.0) << name;
 }
 
+TEST_F(RunReplay, ALostCameraIsAFailure) {
+  auto text = read_text(shipped_);
+  text.replace(text.find("loop = false"), 12, "loop = true");
+  write_text(scratch_ / "lock_step.toml", text);
+  for (const auto& config : {live_config(), scratch_ / "lock_step.toml"}) {
+    make_images(scratch_ / "images", 60);
+    const auto csv = scratch_ / "run.csv";
+    write_text(csv, "");
+    RunningCgsr running(arguments(config, {"--csv", csv}));
+    while (read_text(csv).size() < 1000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::filesystem::remove_all(scratch_ / "images");
+    const auto outcome = running.wait();
+    EXPECT_EQ(outcome.exit_code, 1) << config;
+    EXPECT_THAT(outcome.errors, HasSubstr("error: camera: ")) << config;
+  }
+}
+
 // Whenever SIGTERM comes, from the first moment of the boot on: the program ends within 200 ms, in order, standing still.
 TEST_F(RunReplay, SigtermInAnyPhaseEndsWithin200Milliseconds) {
   const auto config = live_config();

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "pipeline/color/color_model.h"
+#include "pipeline/color/light_history.h"
+#include "pipeline/color/tracker.h"
+#include "pipeline/imaging/reduce.h"
+#include "src/track/session.h"
+
+namespace cgsr::app {
+
+/// Tracks through a session's images, writes what was asked for and keeps what was found.
+class TrackRun {
+ public:
+  /// \param first_frame  number of the image that comes first.
+  TrackRun(Session session, color::ColorModel model, color::Tracker tracker, std::uint64_t first_frame);
+
+  // Each of these is one image further; an error is a file that could not be written.
+
+  /// The image that was learned from: its box is known. Counts as image number one of the output, but never as an answer.
+  Result<void> begin_with(const ImageLease& image, const Box& box);
+  Result<void> track(const ImageLease& image);
+  /// An image that could not be read: nothing is found in it, and the numbering goes on.
+  Result<void> miss();
+
+  /// After the last image: what the video still holds is written. \return an error when it could not be.
+  Result<void> finish();
+
+  [[nodiscard]] int images() const { return asked_; }
+  [[nodiscard]] int found() const { return found_; }
+  [[nodiscard]] std::uint64_t frame() const { return frame_; }
+  [[nodiscard]] const config::Color& config() const { return session_.config; }
+  [[nodiscard]] ImageInput& input() { return *session_.input; }
+
+  /// Over the images from `first_answer` on that were looked at; nothing without a truth.
+  [[nodiscard]] std::optional<Score> score(std::uint64_t first_answer) const;
+
+ private:
+  color::TrackedObject look(const ImageView& view);
+  Result<void> keep(const ImageLease& image, const color::TrackedObject& object);
+  Result<void> draw(const ImageLease& image, const color::TrackedObject& object,
+                    const std::optional<color::Light>& light);
+  Result<void> write_row(const color::TrackedObject& object);
+
+  Session session_;
+  color::ColorModel model_;
+  color::Tracker tracker_;
+  imaging::ReducedImage reduced_;
+  color::LightHistory history_;
+  Boxes boxes_;
+  std::uint64_t frame_;
+  int asked_ = 0;
+  int found_ = 0;
+};
+
+}  // namespace cgsr::app
