@@ -18,6 +18,8 @@ def main():
     with tempfile.NamedTemporaryFile(suffix='.json') as file:
         subprocess.run([tool, '--json', file.name, '--', program], check=True, stdout=subprocess.DEVNULL)
         result = json.load(file)
+    if result.get('config_sha256') != '0f' * 32:
+        sys.exit('the hash of the configuration that the command printed is not there')
     stages = result['stages']
     expect('labels, mean', stages['labels']['mean_minstr'], 4.0)
     expect('labels, worst', stages['labels']['worst_minstr'], 6.0)

@@ -1,5 +1,6 @@
 // Passes two stages in each of three images with loops whose instructions are known, while other threads work: what tools/count has to see.
 
+#include <cstdio>
 #include <thread>
 
 #include "platform/count_marks.h"
@@ -35,4 +36,5 @@ int main() {
   }
   uncounted.join();
   counted.join();
+  std::puts("configuration 0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f0f");
 }
