@@ -83,8 +83,22 @@ void ScaleFilter::forget() {
 }
 
 void ScaleFilter::learn(const imaging::Pyramid& image, const Box& box) {
-  describe(image, box);
-  absorb(static_cast<float>(parameters_.learning_rate));
+  const auto steps = steps_from_described(image, box);
+  if (!steps) describe(image, box);
+  absorb(static_cast<float>(parameters_.learning_rate), steps.value_or(0.0));
+}
+
+/// \return how many steps larger `box` is than the one described, if that is about the same centre and few.
+std::optional<double> ScaleFilter::steps_from_described(const imaging::Pyramid& image, const Box& box) const {
+  constexpr double kMostSteps = kScales / 4.0;
+  constexpr double kSameCentre_px = 0.01;
+  if (image.builds() != described_build_) return std::nullopt;
+  const double dx = box.x + 0.5 * box.width - described_.x - 0.5 * described_.width;
+  const double dy = box.y + 0.5 * box.height - described_.y - 0.5 * described_.height;
+  if (std::hypot(dx, dy) > kSameCentre_px) return std::nullopt;
+  const double steps = std::log(box.width / described_.width) / std::log(parameters_.step);
+  if (std::abs(steps) > kMostSteps) return std::nullopt;
+  return steps;
 }
 
 void ScaleFilter::describe(const imaging::Pyramid& image, const Box& box) {
@@ -114,10 +128,13 @@ void ScaleFilter::describe(const imaging::Pyramid& image, const Box& box) {
   }
 }
 
-void ScaleFilter::absorb(float rate) {
+void ScaleFilter::absorb(float rate, double growth_steps) {
   const float keep = 1.0F - rate;
   for (std::size_t k = 0; k < kFrequencies; ++k) {
-    const Complex g = target_[k];
+    const double angle = -2.0 * std::numbers::pi * static_cast<double>(k) * growth_steps / kScales;
+    const auto c = static_cast<float>(std::cos(angle));
+    const auto s = static_cast<float>(std::sin(angle));
+    const Complex g{target_[k].re * c - target_[k].im * s, target_[k].re * s + target_[k].im * c};
     float power = 0.0F;
     for (std::size_t d = 0; d < features_count_; ++d) {
       const float re = re_[k][d];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "pipeline/imaging/orientation_histograms.h"
@@ -35,13 +36,14 @@ class ScaleFilter {
 
   /// Forgets everything and learns how the object looks in `box`.
   void begin(const imaging::Pyramid& image, const Box& box);
-  /// Learns how it looks now.
+  /// Learns how it looks now. Where a box about the same centre was just described, its description serves: in the spectrum over the scales
+  /// a growth by n steps is a turn of the phase.
   void learn(const imaging::Pyramid& image, const Box& box);
 
   /// Back to what begin() learned.
   void forget();
 
-  /// Growth of less than a quarter of a step is none. Learning the box that was just asked about costs half.
+  /// Growth of less than a quarter of a step is none.
   /// \return the factor by which `box` must grow about its centre to hold the object.
   double estimate(const imaging::Pyramid& image, const Box& box);
 
@@ -55,7 +57,8 @@ class ScaleFilter {
   };
 
   void describe(const imaging::Pyramid& image, const Box& box);
-  void absorb(float rate);
+  void absorb(float rate, double growth_steps = 0.0);
+  [[nodiscard]] std::optional<double> steps_from_described(const imaging::Pyramid& image, const Box& box) const;
 
   ScaleParameters parameters_;
   Box described_;                      ///< whose spectra re_ and im_ are,

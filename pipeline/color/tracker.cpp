@@ -75,6 +75,7 @@ struct Tracker::State {
   void start_again();
   [[nodiscard]] bool is_weak(const Place& place) const;
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
+  bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   [[nodiscard]] TrackedObject answer(const Light& gain, double divergence_of_box) const;
 
@@ -148,11 +149,12 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   if (located && !lost()) {
     local.follow_light(pyramid);
     place = look(reduced, box);
-    sure = !is_weak(place) || find(reduced, matches, budget, place);
+    sure = !is_weak(place) || recognise(reduced, matches, budget, place) || find(reduced, matches, budget, place);
     weak_images = sure ? 0 : weak_images + 1;
     if (lost()) return {};
   } else {
-    sure = (located && stayed(reduced, place)) || find(reduced, matches, budget, place);
+    sure = (located && (stayed(reduced, place) || recognise(reduced, matches, budget, place))) ||
+           find(reduced, matches, budget, place);
     if (!sure) {
       ++images_lost;
       return {};
@@ -219,6 +221,24 @@ void Tracker::State::start_again() {
   box = centred_on(box, model.width_px, model.height_px);
   mean_score = first_score;
   mean_divergence = first_divergence;
+}
+
+/// Elsewhere, but as it looked last. A fast move blurs it, so that its shape says little; its colours must then be all there.
+/// \return whether one of the search's windows is surely the object; else `place` stays as it is.
+bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                               Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
+  Place best;
+  for (int i = 0; i < matches.count && budget.grant(); ++i) {
+    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
+    const Place other = look(reduced, centred_on(window, box.width, box.height));
+    if (other.local.score > best.local.score) best = other;
+  }
+  if (best.local.score < doubt.again_score * mean_score) return false;
+  if (best.divergence > mean_divergence + doubt.weak_divergence) return false;
+  if (tint(best.local.box).agreement < doubt.again_agreement) return false;
+  place = best;
+  return true;
 }
 
 /// First sight, sight again after a loss, or elsewhere: each window of the search is looked at under its own light.

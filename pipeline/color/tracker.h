@@ -39,6 +39,8 @@ struct DoubtParameters {
   int lost_after_images = 3;
   double stay_sharpness = 8.0;
   double stay_score = 0.7;
+  double again_score = 0.75;
+  double again_agreement = 0.9;
   double found_sharpness = 14.0;
   double found_score = 0.45;
   double found_agreement = 0.86;
@@ -63,6 +65,11 @@ struct DoubtParameters {
     visit.number("stay_sharpness", self.stay_sharpness, {0.0, 50.0}, "",
                  "what ends a loss in the place where it began");
     visit.number("stay_score", self.stay_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+    visit.number(
+        "again_score", self.again_score, {0.0, 2.0}, "",
+        "what a place elsewhere needs to be the object as it was last seen: its score, as a share of the mean");
+    visit.number("again_agreement", self.again_agreement, {0.0, 1.0}, "",
+                 "and how far it has the learned colours in the learned amounts, its light taken out");
     visit.number("found_sharpness", self.found_sharpness, {0.0, 50.0}, "",
                  "what a sight anywhere else needs, as the first one does");
     visit.number("found_score", self.found_score, {0.0, 2.0}, "",

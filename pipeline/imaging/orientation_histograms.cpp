@@ -144,6 +144,51 @@ void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells
   }
 }
 
+/// Values per cell with the border's repeated once around, so that every cell has neighbours.
+class BorderedPlane {
+ public:
+  BorderedPlane(int width, int height) : width_(width), height_(height) {}
+  float* row(int y) { return values_.data() + static_cast<std::ptrdiff_t>(y + 1) * kStride + 1; }
+  void repeat_border() {
+    for (int y = 0; y < height_; ++y) {
+      row(y)[-1] = row(y)[0];
+      row(y)[width_] = row(y)[width_ - 1];
+    }
+    std::copy_n(row(0) - 1, width_ + 2, row(-1) - 1);
+    std::copy_n(row(height_ - 1) - 1, width_ + 2, row(height_) - 1);
+  }
+
+ private:
+  static constexpr int kStride = 34;
+  std::array<float, std::size_t{kStride} * kStride> values_;
+  int width_;
+  int height_;
+};
+
+/// The four blocks around a cell, a block being 2x2 cells: \return 1 / norm of each, named by its top left cell.
+void inverse_norms(BorderedPlane& energy, float floor_energy, int width, int height, BorderedPlane& inverse) {
+  energy.repeat_border();
+  for (int y = 0; y < height; ++y) {
+    const float* here = energy.row(y);
+    const float* below = energy.row(y + 1);
+    float* out = inverse.row(y);
+    for (int x = 0; x < width; ++x) {
+      out[x] = 1.0F / std::sqrt(here[x] + here[x + 1] + below[x] + below[x + 1] + floor_energy);
+    }
+  }
+  inverse.repeat_border();
+}
+
+/// The sum of a row's values under the norms of the four blocks they lie in, each cut off. `values` becomes the sum.
+void normalise(const float* norms_above, const float* norms_here, int width, float* values) {
+  const auto clipped = [](float value) { return value < kClip ? value : kClip; };
+  for (int x = 0; x < width; ++x) {
+    const float value = values[x];
+    values[x] = 0.5F * (clipped(value * norms_here[x]) + clipped(value * norms_here[x - 1]) +
+                        clipped(value * norms_above[x]) + clipped(value * norms_above[x - 1]));
+  }
+}
+
 }  // namespace
 
 void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, std::span<float> out) {
@@ -152,42 +197,26 @@ void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, 
   Cells cells(width, height);
   vote(luma, size, cell_px, cells);
 
-  std::array<float, kMostCells> energy;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float* cell = cells.at(x, y);
-      float sum = 0.0F;
-      for (int b = 0; b < kOrientations; ++b) sum += cell[b] * cell[b];
-      energy[static_cast<std::size_t>(y * width + x)] = sum;
+  const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(width) * height;
+  BorderedPlane energy(width, height);
+  for (int y = 0; y < height;
+       ++y) {  // from cell by cell to plane by plane, whose rows are then computed with as vectors
+    float* row_energy = energy.row(y);
+    std::fill_n(row_energy, width, 0.0F);
+    for (int b = 0; b < kOrientations; ++b) {
+      const float* cell = cells.at(0, y) + b;
+      float* to = out.data() + b * plane + static_cast<std::ptrdiff_t>(y) * width;
+      for (int x = 0; x < width; ++x) to[x] = cell[static_cast<std::ptrdiff_t>(x) * Cells::kStride];
+      for (int x = 0; x < width; ++x) row_energy[x] += to[x] * to[x];
     }
   }
-
-  // A block is 2x2 cells; blocks are named by their top left cell and cut off at the border.
   const float floor_energy = 1.25F * static_cast<float>(cell_px * cell_px);  // flat patches stay flat
-  std::array<float, kMostCells> inverse_norm;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int right = std::min(width - 1, x + 1);
-      const int below = std::min(height - 1, y + 1);
-      const auto at = [&](int i, int j) { return energy[static_cast<std::size_t>(j * width + i)]; };
-      inverse_norm[static_cast<std::size_t>(y * width + x)] =
-          1.0F / std::sqrt(at(x, y) + at(right, y) + at(x, below) + at(right, below) + floor_energy);
-    }
-  }
-  const auto plane = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float* cell = cells.at(x, y);
-      const int left = std::max(0, x - 1);
-      const int above = std::max(0, y - 1);
-      const auto at = [&](int i, int j) { return inverse_norm[static_cast<std::size_t>(j * width + i)]; };
-      const std::array<float, 4> norms{at(x, y), at(left, y), at(x, above), at(left, above)};
-      float* to = out.data() + static_cast<std::ptrdiff_t>(y * width + x);
-      for (int b = 0; b < kOrientations; ++b, to += plane) {
-        const float value = cell[b];
-        *to = 0.5F * (std::min(kClip, value * norms[0]) + std::min(kClip, value * norms[1]) +
-                      std::min(kClip, value * norms[2]) + std::min(kClip, value * norms[3]));
-      }
+  BorderedPlane inverse(width, height);
+  inverse_norms(energy, floor_energy, width, height, inverse);
+  for (int b = 0; b < kOrientations; ++b) {
+    for (int y = 0; y < height; ++y) {
+      float* values = out.data() + b * plane + static_cast<std::ptrdiff_t>(y) * width;
+      normalise(inverse.row(y - 1), inverse.row(y), width, values);
     }
   }
 }

@@ -59,6 +59,20 @@ test::Painting room_with_another(const Box& object) {
   return room(&object, kLearnedLight, {{0.1, 0.1, 0.1}, {0.3, 0.3, 0.1}, kThing.bottom, {0.2, 0.2, 0.2}});
 }
 
+/// As a fast move to the side shows it: the mean of `length_px` pixels of a row.
+test::Painting blurred(test::Painting painting, int length_px) {
+  test::Painting sharp = painting;
+  painting.paint([&](int x, int y) {
+    imaging::Rgb sum{0.0, 0.0, 0.0};
+    for (int i = 0; i < length_px; ++i) {
+      const auto pixel = sharp.at(std::clamp(x + i - length_px / 2, 0, kWidth_px - 1), y);
+      sum = {sum.r + pixel.r / length_px, sum.g + pixel.g / length_px, sum.b + pixel.b / length_px};
+    }
+    return sum;
+  });
+  return painting;
+}
+
 /// A tracker with what it needs around it, and images with the noise of a camera.
 class Bench {
  public:
@@ -149,6 +163,19 @@ TEST(Tracker, SomethingElseIsNotTakenForItAtFirstSight) {
     Bench bench;
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(bench.look(room_with_another(place)).found) << place.x << ' ' << i;
   }
+}
+
+// A fast move leaves little of its shape, but all of its colours.
+TEST(Tracker, RecognisesABlurredObjectElsewhere) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(moved(60 + i, 90)).found) << i;
+  int found_images = 0;
+  for (int i = 0; i < 4; ++i) {
+    const Box place = moved(220 + 8 * i, 60);
+    const auto found = bench.look(blurred(room(&place), 5));
+    if (found.found && overlap(found.box, place) > 0.5) ++found_images;
+  }
+  EXPECT_GE(found_images, 3);
 }
 
 // Having left the image, it comes back nearer or farther.
