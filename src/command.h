@@ -24,6 +24,7 @@ void add_check_command(CLI::App& app, int& exit_code);
 void add_learn_command(CLI::App& app, int& exit_code);
 void add_track_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
+void add_sim_command(CLI::App& app, int& exit_code);
 
 /// Prints `error: …` to standard error. \return kFailure.
 int report(const Error& error);
