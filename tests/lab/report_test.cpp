@@ -71,6 +71,17 @@ TEST(Stripe, IsDrawnAsItsColorsAndLeavesAGapWhereNothingWasSeen) {
   EXPECT_EQ(colors, 3U);
 }
 
+// RFC 4648, section 10: "foobar".
+TEST(Picture, LiesInThePageItself) {
+  Report report = sample();
+  report.pictures = {{"what <is> seen", {'f', 'o', 'o', 'b', 'a', 'r'}}};
+
+  const std::string html = to_html({report});
+
+  EXPECT_NE(html.find("base64,Zm9vYmFy\""), std::string::npos);
+  EXPECT_NE(html.find("what &lt;is&gt; seen"), std::string::npos);
+}
+
 TEST(MeanRow, SharesThatAreAllZeroStillHaveAnUpperBound) {
   const Row row = mean_row("r", "precision", "", std::vector<double>(20, 0.0), 1);
 

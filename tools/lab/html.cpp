@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
 #include "tools/lab/report.h"
 #include "tools/lab/report_table.h"
@@ -149,6 +150,18 @@ std::string to_svg(const Stripe& stripe) {
   return svg + "</svg></figure>\n";
 }
 
+std::string base64(const std::vector<std::uint8_t>& bytes) {
+  std::vector<unsigned char> text(4 * (bytes.size() / 3 + 1) + 1);  // with the zero that OpenSSL puts at the end
+  const int length = EVP_EncodeBlock(text.data(), bytes.data(), static_cast<int>(bytes.size()));
+  return {text.begin(), text.begin() + length};
+}
+
+std::string to_figure(const Picture& picture) {
+  return fmt::format(
+      R"(<figure style="display:inline-block;margin:.5em"><img width="440" alt="" src="data:image/jpeg;base64,{}"><figcaption>{}</figcaption></figure>)",
+      base64(picture.jpeg), escaped(picture.caption));
+}
+
 std::string cell(const Row* row) {
   if (row == nullptr) return "<td></td>";
   std::string small =
@@ -173,6 +186,7 @@ std::string section(const Report& report) {
   html += "</table>\n";
   for (const Plot& plot : report.plots) html += to_svg(plot);
   for (const Stripe& stripe : report.stripes) html += to_svg(stripe);
+  for (const Picture& picture : report.pictures) html += to_figure(picture) + "\n";
   if (!report.notes.empty()) {
     html += "<ul>";
     for (const std::string& note : report.notes) html += fmt::format("<li>{}</li>", escaped(note));

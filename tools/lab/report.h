@@ -50,6 +50,12 @@ struct Stripe {
   std::vector<Band> bands;  ///< equally long
 };
 
+/// For the page alone.
+struct Picture {
+  std::string caption;
+  std::vector<std::uint8_t> jpeg;
+};
+
 /// A table or figure, reproduced.
 struct Report {
   std::string name;
@@ -60,6 +66,7 @@ struct Report {
   std::vector<Plot> plots;
   std::vector<std::string> notes;  ///< what a reader has to know to read the figures rightly; a sentence each
   std::vector<Stripe> stripes = {};
+  std::vector<Picture> pictures = {};
 };
 
 /// A row measured as the mean of independent trials.
