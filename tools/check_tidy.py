@@ -66,16 +66,16 @@ def main():
         entry["key"] = path.relative_to(ROOT).as_posix()
         if memory.get(entry["key"]) != entry["mark"]:
             todo.append(entry)
-    print(f"{len(todo)} of {len(commands)} files changed since they were last clean")
+    print(f"{len(todo)} of {len(commands)} files changed since they were last clean", flush=True)
     bad = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for entry, code, output in pool.map(lambda entry: tidy(entry, checks), todo):
             if code == 0 and "warning:" not in output:
                 memory[entry["key"]] = entry["mark"]
+                memory_file.write_text(json.dumps(memory, indent=1, sort_keys=True))  # now: who is stopped midway goes on from here
                 continue
             bad += 1
-            print(output.replace(f"{ROOT}/", ""))
-    memory_file.write_text(json.dumps(memory, indent=1, sort_keys=True))
+            print(output.replace(f"{ROOT}/", ""), flush=True)
     return 1 if bad else 0
 
 

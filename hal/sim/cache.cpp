@@ -156,7 +156,8 @@ void ImageCache::make_room(std::uintmax_t bytes) {
 }
 
 Result<std::unique_ptr<CachedPhotographer>> CachedPhotographer::make(const Scene& scene, const CameraModel& camera,
-                                                                     const RenderOptions& options, CacheOptions cache) {
+                                                                     const RenderOptions& options,
+                                                                     const CacheOptions& cache) {
   auto photographer = Photographer::make(scene, camera, options);
   if (!photographer) return tl::unexpected(photographer.error());
   std::string scene_key;
@@ -169,10 +170,10 @@ Result<std::unique_ptr<CachedPhotographer>> CachedPhotographer::make(const Scene
     scene_key = sum.hex();
   }
   return std::unique_ptr<CachedPhotographer>(
-      new CachedPhotographer(std::move(*photographer), std::move(cache), std::move(scene_key)));
+      new CachedPhotographer(std::move(*photographer), cache, std::move(scene_key)));
 }
 
-CachedPhotographer::CachedPhotographer(std::unique_ptr<Photographer> photographer, CacheOptions cache,
+CachedPhotographer::CachedPhotographer(std::unique_ptr<Photographer> photographer, const CacheOptions& cache,
                                        std::string scene_key)
     : photographer_(std::move(photographer)),
       cache_(cache),

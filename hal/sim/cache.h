@@ -66,7 +66,7 @@ class CachedPhotographer {
  public:
   /// `scene` must outlive it and stay as it is.
   static Result<std::unique_ptr<CachedPhotographer>> make(const Scene& scene, const CameraModel& camera,
-                                                          const RenderOptions& options, CacheOptions cache);
+                                                          const RenderOptions& options, const CacheOptions& cache);
 
   /// As Photographer::take().
   double take(const std::vector<Moment>& moments, const SensorSettings& settings, const ImageIdentity& identity,
@@ -76,7 +76,7 @@ class CachedPhotographer {
   [[nodiscard]] const ImageCache::Counts& counts() const { return cache_.counts(); }
 
  private:
-  CachedPhotographer(std::unique_ptr<Photographer> photographer, CacheOptions cache, std::string scene_key);
+  CachedPhotographer(std::unique_ptr<Photographer> photographer, const CacheOptions& cache, std::string scene_key);
 
   std::unique_ptr<Photographer> photographer_;
   ImageCache cache_;

@@ -61,9 +61,11 @@ void add(Fingerprint& sum, const Part& part) {
 
 // The build identity in a loaded object's notes, or what else tells its versions apart.
 std::string identity_of(const dl_phdr_info& object) {
+  constexpr char kOwner[] = "GNU";  // with its zero
   for (int i = 0; i < object.dlpi_phnum; ++i) {
     const auto& header = object.dlpi_phdr[i];
     if (header.p_type != PT_NOTE) continue;
+    // NOLINTNEXTLINE(performance-no-int-to-ptr): addresses are numbers here, the linker gives nothing else
     const auto* at = reinterpret_cast<const char*>(object.dlpi_addr + header.p_vaddr);
     const char* end = at + header.p_memsz;
     while (at + sizeof(ElfW(Nhdr)) <= end) {
@@ -72,7 +74,8 @@ std::string identity_of(const dl_phdr_info& object) {
       const auto padded = [](std::size_t size) { return (size + 3) / 4 * 4; };
       const char* name = at + sizeof note;
       const char* content = name + padded(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID && std::string_view(name, note.n_namesz) == std::string_view("GNU", 4)) {
+      if (note.n_type == NT_GNU_BUILD_ID &&
+          std::string_view(name, note.n_namesz) == std::string_view(kOwner, sizeof kOwner)) {
         return {content, note.n_descsz};
       }
       at = content + padded(note.n_descsz);

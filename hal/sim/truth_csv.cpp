@@ -15,7 +15,7 @@ namespace {
 
 // A name becomes part of a column's; RFC 4180 quotes what would break the row.
 std::string column(std::string_view name, std::string_view what) {
-  const std::string plain = fmt::format("{}.{}", name, what);
+  std::string plain = fmt::format("{}.{}", name, what);
   if (plain.find_first_of(",\"\r\n") == std::string::npos) return plain;
   std::string quoted = "\"";
   for (const char c : plain) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
