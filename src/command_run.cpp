@@ -27,6 +27,7 @@ struct Options {
   std::string model;
   std::string json;
   std::string log_level = "info";
+  int seed = -1;
   robot::RunOptions run;
 };
 
@@ -39,10 +40,13 @@ std::string ended_by(const robot::Robot& robot) {
 Result<void> apply(const Options& options, config::Robot& config) {
   if (!options.input.empty()) config.camera.replay.path = options.input;
   if (!options.model.empty()) config.run.model = options.model;
-  if (config.run.model.empty()) {
-    return fail(fmt::format(
-        "{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a model)",
-        options.config));
+  if (options.seed >= 0) config.sim.seed = options.seed;
+  if (config.run.model.empty() && config.run.learn.empty()) {
+    return fail(
+        fmt::format("{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a "
+                    "model, or run.learn "
+                    "names a region of the first image)",
+                    options.config));
   }
   return {};
 }
@@ -81,6 +85,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--config", options->config, "the robot's file")->capture_default_str();
   command->add_option("--input", options->input, "images to replay instead of those that the file names");
   command->add_option("--model", options->model, "object to follow instead of the one that the file names");
+  command->add_option("--seed", options->seed, "of the simulation instead of the one that the file names")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--duration", options->run.duration_s, "end after that many seconds")->check(CLI::PositiveNumber);
   command->add_flag("--dry-run", options->run.dry_run, "compute and record, command nothing");
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");

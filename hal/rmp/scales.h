@@ -49,7 +49,8 @@ struct RmpScales {
                  "counts of the power base's battery");
     visit.number("ui_battery_offset_v", self.ui_battery_offset_v, {0.0, 10.0}, "V",
                  "user interface's battery at count zero");
-    visit.number("ui_battery_v_per_count", self.ui_battery_v_per_count, {0.0001, 1.0}, "V", "its volts for each count");
+    visit.number("ui_battery_v_per_count", self.ui_battery_v_per_count, {0.0001, 1.0}, "V/count",
+                 "its volts for each count");
   }
 };
 

@@ -5,6 +5,8 @@
 
 #include "hal/dummy/kinematic_drive.h"
 #include "hal/replay/replay_camera.h"
+#include "hal/rmp/parameters.h"
+#include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
 #include "pipeline/motion_limits.h"
 #include "pipeline/vision_loop.h"
@@ -15,30 +17,62 @@ namespace cgsr::config {
 
 enum class Pace : std::uint8_t {
   kLockStep,  ///< one thread steps everything, the stamps are the time: as fast as it goes, the same bytes every time.
+  kRealTime,  ///< the same, but no faster than the clock: time slows where images take longer, and none is dropped.
   kLive,      ///< every task has its thread and the clock is real.
 };
-inline constexpr std::array kPaceNames{Named<Pace>{"lock_step", Pace::kLockStep}, Named<Pace>{"live", Pace::kLive}};
+inline constexpr std::array kPaceNames{Named<Pace>{"lock_step", Pace::kLockStep},
+                                       Named<Pace>{"real_time", Pace::kRealTime}, Named<Pace>{"live", Pace::kLive}};
+
+enum class CameraSource : std::uint8_t { kReplay, kSim };
+inline constexpr std::array kCameraSourceNames{Named<CameraSource>{"replay", CameraSource::kReplay},
+                                               Named<CameraSource>{"sim", CameraSource::kSim}};
+
+/// Where in the first image the object is that shall be followed. No width: it is not learned so.
+struct LearnRegion {
+  int x_px = 0;
+  int y_px = 0;
+  int width_px = 0;
+  int height_px = 0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("x_px", self.x_px, {0, 8192}, "px", "left edge");
+    visit.number("y_px", self.y_px, {0, 8192}, "px", "upper edge");
+    visit.number("width_px", self.width_px, {0, 8192}, "px", "0: nothing is learned");
+    visit.number("height_px", self.height_px, {0, 8192}, "px", "0: nothing is learned");
+  }
+
+  [[nodiscard]] bool empty() const { return width_px == 0 || height_px == 0; }
+};
 
 struct Run {
   Pace pace = Pace::kLockStep;
   double result_latency_s = 0.033;
   std::string model;
+  LearnRegion learn;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("pace", self.pace, kPaceNames, "lock_step: the stamps are the time; live: a thread per task");
+    visit.choice(
+        "pace", self.pace, kPaceNames,
+        "lock_step: the stamps are the time; real_time: likewise, but no faster than the clock; live: a thread "
+        "per task");
     visit.number("result_latency_s", self.result_latency_s, {0.0, 0.5}, "s",
                  "in lock-step: from an image's stamp until its result reaches motion, however slow the machine");
     visit.text("model", self.model, "the object to follow: a file that cgsr learn wrote");
+    visit.section("learn", self.learn, "Without a model: what lies here in the first image is learned and followed");
   }
 };
 
 struct Camera {
+  CameraSource source = CameraSource::kReplay;
   Pinhole pinhole;
   hal::ReplayParameters replay;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
+    visit.choice("source", self.source, kCameraSourceNames,
+                 "replay: files; sim: the simulated home, and with it the base on its virtual CAN bus and the lines");
     visit.section("pinhole", self.pinhole, "The optics of the images that the camera delivers");
     visit.section("replay", self.replay, "Video files and image folders as a camera");
   }
@@ -58,7 +92,9 @@ struct Switches {
 struct Robot {
   Run run;
   Camera camera;
+  hal::SimulationParameters sim;
   hal::KinematicDriveParameters drive;
+  hal::rmp::RmpParameters rmp;
   Switches switches;
   VisionStages stage;
   Color color;
@@ -69,7 +105,9 @@ struct Robot {
   static void describe(Self& self, Visitor& visit) {
     visit.section("run", self.run, "How the program runs, and after what");
     visit.section("camera", self.camera, "Where images come from");
-    visit.section("drive", self.drive, "The base: a unicycle without wheels, until there is a real one");
+    visit.section("sim", self.sim, "The simulated home (camera.source = \"sim\")");
+    visit.section("drive", self.drive, "The base that goes with replayed images: a unicycle without wheels");
+    visit.section("rmp", self.rmp, "The Segway on a CAN bus: the base of the simulated home");
     visit.section("switches", self.switches, "Named lines");
     visit.section("stage", self.stage, "The schedule: which stage runs in which frame and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
@@ -80,11 +118,15 @@ struct Robot {
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
+    if (camera.source == CameraSource::kSim) {
+      return live ? "run.pace = \"live\" does not go with camera.source = \"sim\": lock_step or real_time" : "";
+    }
     const bool own_rate = camera.replay.pace == hal::ReplayPace::kOwnRate;
     if (live && !own_rate)
       return "run.pace = \"live\" needs camera.replay.pace = \"own_rate\": images must come in real time";
     if (!live && own_rate)
-      return "run.pace = \"lock_step\" needs camera.replay.pace = \"as_fast_as_possible\": the stamps are the time";
+      return "run.pace = \"lock_step\" or \"real_time\" needs camera.replay.pace = \"as_fast_as_possible\": the stamps "
+             "are the time";
     return "";
   }
 };

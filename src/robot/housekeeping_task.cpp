@@ -83,6 +83,9 @@ void HousekeepingTask::take(const VisionReport& report) {
   tally_.found += decision.object.found ? 1 : 0;
   const auto light =
       lights_.add(report.record.stamp, decision.object.found ? std::optional(decision.object.light) : std::nullopt);
+  std::optional<hal::ImageTruth> truth;
+  if (outputs_.simulation != nullptr) truth = outputs_.simulation->truth(report.record.stamp);
+  if (truth) truths_.add(*truth, decision.object, tally_.last_motion);
   write_row(report);
   if (auto picture = picture_of(report.record.image_sequence)) {
     ++tally_.pictures;
@@ -90,7 +93,7 @@ void HousekeepingTask::take(const VisionReport& report) {
     for (int y = 0; y < view.height_px; ++y) {
       inputs_sum_.add(view.row(y), static_cast<std::size_t>(view.width_px) * 2);
     }
-    draw(report, *picture, light);
+    draw(report, *picture, light, truth);
   }
 }
 
@@ -110,7 +113,7 @@ void HousekeepingTask::write_row(const VisionReport& report) {
 }
 
 void HousekeepingTask::draw(const VisionReport& report, const ImageLease& picture,
-                            const std::optional<color::Light>& light) {
+                            const std::optional<color::Light>& light, const std::optional<hal::ImageTruth>& truth) {
   if (!outputs_.video) return;
   const auto& decision = report.decision;
   app::OverlayFacts facts;
@@ -124,7 +127,16 @@ void HousekeepingTask::draw(const VisionReport& report, const ImageLease& pictur
                                     motion.commanded.left_radps,
                                     motion.cause == StopCause::kNone ? "free to move" : text(motion.cause)));
   facts.lines.push_back(stage_times(report.record, table_));
-  note(outputs_.video->add(outputs_.overlay->draw(picture.view(), facts)));
+  if (truth && truth->in_view) facts.truth = truth->box;
+  const cv::Mat& overlay = outputs_.overlay->draw(picture.view(), facts);
+  if (!outputs_.plan) return note(outputs_.video->add(overlay));
+  app::PlanFacts plan;
+  if (truth) plan.truth = *truth;
+  plan.found = decision.object.found;
+  plan.commanded = motion.commanded;
+  plan.set_distance_m = outputs_.set_distance_m;
+  cv::hconcat(overlay, outputs_.plan->draw(plan), side_by_side_);
+  note(outputs_.video->add(side_by_side_));
 }
 
 void HousekeepingTask::note(const Result<void>& outcome) {
@@ -132,7 +144,8 @@ void HousekeepingTask::note(const Result<void>& outcome) {
   // The robot goes on without its files; whoever started it learns at once and again from the exit code.
   tally_.output_problem = outcome.error().message;
   spdlog::error("{}; nothing more is written", tally_.output_problem);
-  outputs_ = {};
+  outputs_.csv.reset();
+  outputs_.video.reset();
 }
 
 }  // namespace cgsr::robot

@@ -4,13 +4,16 @@
 #include <optional>
 #include <string>
 
+#include "hal/simulation.h"
 #include "pipeline/color/light_history.h"
 #include "pipeline/runtime/stage_table.h"
 #include "platform/config/sha256.h"
 #include "src/output/overlay.h"
+#include "src/output/plan_view.h"
 #include "src/output/text_file.h"
 #include "src/output/video_writer.h"
 #include "src/robot/links.h"
+#include "src/robot/truth_tally.h"
 
 namespace cgsr::robot {
 
@@ -18,7 +21,10 @@ namespace cgsr::robot {
 struct RunOutputs {
   std::optional<app::TextFile> csv;
   std::optional<app::VideoWriter> video;
-  std::optional<app::Overlay> overlay;  ///< there whenever `video` is.
+  std::optional<app::Overlay> overlay;          ///< there whenever `video` is.
+  std::optional<app::PlanView> plan;            ///< beside it; only of a simulated home.
+  const hal::Simulation* simulation = nullptr;  ///< where truth comes from; null: there is none.
+  double set_distance_m = 1.0;                  ///< that the robot shall keep, for truth and plan.
 };
 
 /// What a run came to.
@@ -39,7 +45,7 @@ struct RunTally {
 class HousekeepingTask {
  public:
   HousekeepingTask(Links& links, const runtime::Schedule& schedule, RunOutputs outputs)
-      : links_(links), table_(schedule), outputs_(std::move(outputs)) {}
+      : links_(links), table_(schedule), outputs_(std::move(outputs)), truths_(outputs_.set_distance_m) {}
 
   /// Deals with all that lies in the rings.
   void step();
@@ -49,6 +55,10 @@ class HousekeepingTask {
 
   [[nodiscard]] const RunTally& tally() const { return tally_; }
   [[nodiscard]] const runtime::StageTable& table() const { return table_; }
+  /// \return what the run came to by what was really there; null without a simulation.
+  [[nodiscard]] const TruthFigures* truth() const {
+    return outputs_.simulation == nullptr ? nullptr : &truths_.figures();
+  }
 
   /// SHA-256 over the rows of the CSV and over the pixels of the images. End the sums.
   std::string outputs_sha256() { return outputs_sum_.hex(); }
@@ -59,13 +69,16 @@ class HousekeepingTask {
   void take(const VisionReport& report);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
   void write_row(const VisionReport& report);
-  void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light);
+  void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,
+            const std::optional<hal::ImageTruth>& truth);
   void note(const Result<void>& outcome);
 
   Links& links_;
   runtime::StageTable table_;
   RunOutputs outputs_;
   RunTally tally_;
+  TruthTally truths_;
+  cv::Mat side_by_side_;
   color::LightHistory lights_;
   std::optional<ImageLease> next_picture_;
   behavior::FollowState state_ = behavior::FollowState::kWaiting;

@@ -7,7 +7,10 @@
 #include "hal/dummy/dummy_switches.h"
 #include "hal/dummy/kinematic_drive.h"
 #include "hal/replay/replay_camera.h"
+#include "hal/rmp/rmp_drive.h"
+#include "pipeline/color/learn.h"
 #include "pipeline/color/model_file.h"
+#include "src/robot/simulation_plugin.h"
 
 namespace cgsr::robot {
 
@@ -28,6 +31,7 @@ Robot::~Robot() {
 }
 
 Result<void> Robot::open_camera() {
+  if (config_.camera.source == config::CameraSource::kSim) return open_simulation();
   auto camera = std::make_unique<hal::ReplayCamera>(config_.camera.replay, &real_clock_);
   auto mode = camera->start();
   if (!mode) return tl::unexpected(mode.error());
@@ -37,8 +41,39 @@ Result<void> Robot::open_camera() {
   return {};
 }
 
+Result<void> Robot::open_simulation() {
+  auto simulation = load_simulation(config_.sim);
+  if (!simulation) return tl::unexpected(simulation.error());
+  simulation_ = std::move(*simulation);
+  camera_ = simulation_->take_camera();
+  first_due_ = MonoTime{simulation_->image_delay()};
+  notes_ = simulation_->notes();
+  auto mode = camera_->start();
+  if (!mode) return tl::unexpected(mode.error());
+  mode_ = *mode;
+  return {};
+}
+
+/// The object to follow: a file, or what a person shows in the camera's first image.
+Result<color::ColorModel> Robot::learn_or_load() {
+  if (!config_.run.model.empty()) return color::load_model(config_.run.model);
+  const auto& region = config_.run.learn;
+  if (region.empty()) return fail("neither run.model nor run.learn says what shall be followed");
+  const bool live = config_.run.pace == config::Pace::kLive;
+  const auto image = camera_->next_image(live ? real_clock_.now() + seconds(5.0) : first_due_);
+  if (!image) return fail(fmt::format("no image to learn the object from: {}", camera_->last_problem()));
+  first_due_ += mode_.frame_period;
+  const Box box{static_cast<double>(region.x_px), static_cast<double>(region.y_px),
+                static_cast<double>(region.width_px), static_cast<double>(region.height_px)};
+  const color::Sample sample{image->view(), box};
+  auto learned = color::learn({&sample, 1}, config_.color.learn);
+  if (!learned) return tl::unexpected(learned.error());
+  notes_.push_back("learned from the first image: " + learned->words);
+  return std::move(learned->model);
+}
+
 Result<void> Robot::make_loops() {
-  const auto model = color::load_model(config_.run.model);
+  const auto model = learn_or_load();
   if (!model) return tl::unexpected(model.error());
   auto tracker = color::Tracker::create(*model, config_.color.track, mode_.width_px, mode_.height_px);
   if (!tracker) return tl::unexpected(tracker.error());
@@ -63,10 +98,18 @@ Result<void> Robot::open_outputs() {
     if (auto head = csv->add_line(run_csv_head()); !head) return head;
     outputs.csv.emplace(std::move(*csv));
   }
+  if (simulation_) {
+    outputs.simulation = simulation_.get();
+    outputs.set_distance_m = config_.follow.distance_m;
+  }
   if (!options_.video.empty()) {
     outputs.overlay.emplace(mode_.width_px, mode_.height_px);
-    auto video =
-        app::VideoWriter::create(options_.video, outputs.overlay->picture_size(), 1.0 / to_seconds(mode_.frame_period));
+    cv::Size size = outputs.overlay->picture_size();
+    if (simulation_) {
+      outputs.plan.emplace(simulation_->plan(), size.height);
+      size.width += outputs.plan->picture_size().width;
+    }
+    auto video = app::VideoWriter::create(options_.video, size, 1.0 / to_seconds(mode_.frame_period));
     if (!video) return tl::unexpected(video.error());
     outputs.video.emplace(std::move(*video));
   }
@@ -75,15 +118,25 @@ Result<void> Robot::open_outputs() {
 }
 
 Result<void> Robot::open_base() {
-  motion_ = std::make_unique<MotionLoop>(std::make_unique<hal::KinematicDrive>(config_.drive), config_.motion,
+  motion_ = std::make_unique<MotionLoop>(make_drive(), config_.motion,
                                          options_.dry_run ? MotionLoop::Mode::kDryRun : MotionLoop::Mode::kLive);
   if (auto started = motion_->start(); !started) return started;
+  switches_ = make_switches();
+  return switches_->start();
+}
+
+std::unique_ptr<hal::Drive> Robot::make_drive() {
+  if (simulation_) return std::make_unique<hal::rmp::RmpDrive>(simulation_->take_can_bus(), config_.rmp);
+  return std::make_unique<hal::KinematicDrive>(config_.drive);
+}
+
+std::unique_ptr<hal::Switches> Robot::make_switches() {
+  if (simulation_) return simulation_->take_switches();
   std::vector<hal::DummyLine> lines;
   if (!config_.switches.arming_line.empty()) {
     lines.push_back({config_.switches.arming_line, hal::LineDirection::kInput, false});
   }
-  switches_ = std::make_unique<hal::DummySwitches>(std::move(lines));
-  return switches_->start();
+  return std::make_unique<hal::DummySwitches>(std::move(lines));
 }
 
 Result<void> Robot::run(StopRequest& stop) {

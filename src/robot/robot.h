@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hal/camera.h"
+#include "hal/simulation.h"
 #include "hal/switches.h"
 #include "pipeline/motion_loop.h"
 #include "pipeline/vision_loop.h"
@@ -25,7 +26,7 @@ struct RunOptions {
   std::string video;
 };
 
-/// A robot, put together from its file: devices, loops and what connects them. Boot order: model, camera, schedule, stages, outputs, base,
+/// A robot, put together from its file: devices, loops and what connects them. Boot order: camera, model, schedule, stages, outputs, base,
 /// switches; what fails is said and nothing behind it is touched.
 class Robot {
  public:
@@ -48,9 +49,13 @@ class Robot {
   Robot(const config::Robot& config, const RunOptions& options);
 
   Result<void> open_camera();
+  Result<void> open_simulation();
+  Result<color::ColorModel> learn_or_load();
   Result<void> make_loops();
   Result<void> open_outputs();
   Result<void> open_base();
+  [[nodiscard]] std::unique_ptr<hal::Drive> make_drive();
+  [[nodiscard]] std::unique_ptr<hal::Switches> make_switches();
 
   void run_lock_step(StopRequest& stop);
   Result<void> run_live(StopRequest& stop);
@@ -59,7 +64,9 @@ class Robot {
   RunOptions options_;
   RealClock real_clock_;
   SimulatedClock stamp_clock_;
-  std::unique_ptr<hal::Camera> camera_;  // before everything that holds leases, so that it goes after them
+  std::unique_ptr<hal::Simulation> simulation_;  // null with real devices and recordings; outlives its devices
+  MonoTime first_due_{};                         // when the first image for the loops is there
+  std::unique_ptr<hal::Camera> camera_;          // before everything that holds leases, so that it goes after them
   hal::CameraMode mode_;
   Links links_;
   std::vector<std::string> notes_;

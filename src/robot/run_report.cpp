@@ -42,6 +42,50 @@ Json motion_json(const RunTally& tally) {
           {"latched", text(last.latched)}};
 }
 
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+Json truth_json(const TruthFigures& truth) {
+  return {{"images", truth.images},
+          {"in_view_share", share(truth.in_view, truth.images)},
+          {"found_share", share(truth.found, truth.in_view)},
+          {"found_right_share", share(truth.found_right, truth.in_view)},
+          {"found_nothing", truth.found_nothing},
+          {"fastest_object_mps", truth.fastest_object_mps},
+          {"smallest_distance_m", truth.smallest_distance_m},
+          {"nearest_by_own_motion", or_null(truth.nearest_by_own_motion)},
+          {"losses", truth.losses},
+          {"longest_command_after_loss_s", or_null(truth.longest_command_after_loss_s)},
+          {"longest_roll_after_loss_s", or_null(truth.longest_roll_after_loss_s)},
+          {"nearings", truth.nearings},
+          {"longest_command_when_nearer_s", or_null(truth.longest_command_when_nearer_s)}};
+}
+
+std::string in_words(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.2f}{}", *value, unit) : "never happened";
+}
+
+std::string truth_text(const TruthFigures& truth) {
+  std::string text = fmt::format(
+      "truth, from the first sight on: the object was there in {} images, in view in {:.1f} %; of these the robot "
+      "found "
+      "{:.1f} %, {:.1f} % with the right box; {} times it found what was not in view\n",
+      truth.images, 100.0 * share(truth.in_view, truth.images), 100.0 * share(truth.found, truth.in_view),
+      100.0 * share(truth.found_right, truth.in_view), truth.found_nothing);
+  text += fmt::format("nearest by its own motion, of the set distance: {}; nearest at all {:.2f} m\n",
+                      in_words(truth.nearest_by_own_motion, ""), truth.smallest_distance_m);
+  text +=
+      fmt::format("lost {} times: command zero after {} at most, standing after {}\n", truth.losses,
+                  in_words(truth.longest_command_after_loss_s, " s"), in_words(truth.longest_roll_after_loss_s, " s"));
+  return text + fmt::format("object came nearer {} times: command zero after {} at most\n\n", truth.nearings,
+                            in_words(truth.longest_command_when_nearer_s, " s"));
+}
+
 }  // namespace
 
 std::string summary_json(Robot& robot, const std::string& ended_by) {
@@ -65,6 +109,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
                      {"disconnected", capture.disconnected.load()}};
   json["found"] = tally.found;
   json["motion"] = motion_json(tally);
+  if (const TruthFigures* truth = housekeeping.truth()) json["truth"] = truth_json(*truth);
   json["stages"] = stages_json(housekeeping.table());
   visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
     json["rings"][name] = {{"capacity", ring.capacity},
@@ -89,6 +134,7 @@ std::string summary_text(Robot& robot, const std::string& ended_by) {
       last.odometry.heading_rad);
   text += fmt::format("last command {:+.2f} m/s {:+.2f} rad/s ({})\n\n", last.commanded.forward_mps,
                       last.commanded.left_radps, cgsr::text(last.cause));
+  if (const TruthFigures* truth = housekeeping.truth()) text += truth_text(*truth);
   text += runtime::to_text(housekeeping.table());
   text += "\nring          capacity  high water  pushed  dropped  skipped\n";
   visit_rings(robot.links(), [&text](const char* name, const RingStatistics& ring) {

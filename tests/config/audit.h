@@ -58,28 +58,24 @@ class Audit {
 
   // A key that has a dimension ends in its unit.
   void check_unit(std::string_view name, std::string_view unit) {
-    for (const std::string_view count : {"", "1", "frames", "nat"}) {
+    for (const std::string_view count : {"", "1", "frames", "nat", "sets", "commands"}) {
       if (unit == count) return;  // no dimension
     }
     struct Suffix {
       std::string_view unit, suffix;
     };
-    static constexpr std::array<Suffix, 16> kSuffixes{{{"m", "_m"},
-                                                       {"s", "_s"},
-                                                       {"ms", "_ms"},
-                                                       {"µs", "_us"},
-                                                       {"rad", "_rad"},
-                                                       {"deg", "_deg"},
-                                                       {"px", "_px"},
-                                                       {"%", "_percent"},
-                                                       {"Hz", "_hz"},
-                                                       {"1/s", "_per_s"},
-                                                       {"m/s", "_mps"},
-                                                       {"m/s²", "_mps2"},
-                                                       {"rad/s", "_radps"},
-                                                       {"rad/s²", "_radps2"},
-                                                       {"m/s^2", "_mps2"},
-                                                       {"rad/s^2", "_radps2"}}};
+    static constexpr std::array<Suffix, 24> kSuffixes{{{"m", "_m"},           {"s", "_s"},
+                                                       {"ms", "_ms"},         {"µs", "_us"},
+                                                       {"rad", "_rad"},       {"deg", "_deg"},
+                                                       {"px", "_px"},         {"%", "_percent"},
+                                                       {"Hz", "_hz"},         {"1/s", "_per_s"},
+                                                       {"m/s", "_mps"},       {"m/s²", "_mps2"},
+                                                       {"rad/s", "_radps"},   {"rad/s²", "_radps2"},
+                                                       {"m/s^2", "_mps2"},    {"rad/s^2", "_radps2"},
+                                                       {"1/m", "_per_m"},     {"1/(m/s)", "_per_mps"},
+                                                       {"1/deg", "_per_deg"}, {"1/(deg/s)", "_per_degps"},
+                                                       {"1/rev", "_per_rev"}, {"V", "_v"},
+                                                       {"1/V", "_per_v"},     {"V/count", "_v_per_count"}}};
     for (const auto& [known, suffix] : kSuffixes) {
       if (known != unit) continue;
       if (!name.ends_with(suffix)) complain(name, "does not end in its unit " + std::string(suffix));
