@@ -80,6 +80,14 @@ int WorldBuilder::material(const std::string& name, int line, const std::string&
 
 void WorldBuilder::add_part(std::string name, Mesh mesh, int material, int figure, const ShapeSpec& spec,
                             bool casts_shadow) {
+  size_.triangles += mesh.triangles.size();
+  ++(figure < 0 ? size_.still_parts : size_.moving_parts);
+  if (size_.triangles > kMost.triangles || size_.still_parts > kMost.still_parts ||
+      size_.moving_parts > kMost.moving_parts) {
+    return complain(spec.line,
+                    fmt::format("'{}': the world has more than {} triangles, {} parts that stand still or {} that move",
+                                name, kMost.triangles, kMost.still_parts, kMost.moving_parts));
+  }
   Part part;
   part.name = std::move(name);
   part.mesh = std::move(mesh);
@@ -115,8 +123,16 @@ void WorldBuilder::add_parts(const ShapeSpec& spec, const Pose& X_FS, int figure
   }
 }
 
+// Stops at the first copy that is wrong: the others would be wrong in the same way.
+void WorldBuilder::add_copies(const ShapeSpec& spec, int figure) {
+  const std::size_t problems_before = problems_.size();
+  for (int copy = 0; copy < spec.count && problems_.size() == problems_before; ++copy) {
+    add_parts(spec, pose_of(spec, copy), figure);
+  }
+}
+
 void WorldBuilder::add_shape(const ShapeSpec& spec) {
-  for (int copy = 0; copy < spec.count; ++copy) add_parts(spec, pose_of(spec, copy), -1);
+  add_copies(spec, -1);
 }
 
 void WorldBuilder::set_script(Figure& figure, const WalkSpec& walk, const std::vector<PresenceSpec>& presence,
@@ -148,11 +164,7 @@ void WorldBuilder::add_object(const ObjectSpec& spec) {
   set_script(figure, spec.walk, spec.presence, spec.line);
   world_.scene.figures.push_back(figure);
   if (spec.shape.empty()) complain(spec.line, fmt::format("object '{}' has no shape", spec.name));
-  for (const ShapeSpec& shape : spec.shape) {
-    for (int copy = 0; copy < shape.count; ++copy) {
-      add_parts(shape, pose_of(shape, copy), static_cast<int>(world_.scene.figures.size()) - 1);
-    }
-  }
+  for (const ShapeSpec& shape : spec.shape) add_copies(shape, static_cast<int>(world_.scene.figures.size()) - 1);
 }
 
 void WorldBuilder::add_person(const PersonSpec& spec) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -38,9 +39,17 @@ class WorldBuilder {
     int line;
     std::string text;
   };
+  /// More than any world needs, and less than fills a memory: a count that was meant for something else stops here.
+  struct Size {
+    std::size_t triangles = 0;
+    std::size_t still_parts = 0;
+    std::size_t moving_parts = 0;
+  };
+  static constexpr Size kMost{4'000'000, 100'000, 2'000};
 
   void complain(int line, std::string text) { problems_.push_back({line, std::move(text)}); }
   int material(const std::string& name, int line, const std::string& who);
+  void add_copies(const ShapeSpec& spec, int figure);
   void add_parts(const ShapeSpec& spec, const Pose& X_FS, int figure);
   void add_mesh_parts(const ShapeSpec& spec, const Pose& X_FS, int figure);
   void add_part(std::string name, Mesh mesh, int material, int figure, const ShapeSpec& spec, bool casts_shadow);
@@ -52,6 +61,7 @@ class WorldBuilder {
   std::map<std::string, int> materials_;
   std::map<std::string, int> figures_;
   std::vector<Problem> problems_;
+  Size size_;
 };
 
 /// The shapes of a world, repeats written out, that are solid: what a lamp may not be inside of.
