@@ -11,8 +11,8 @@ namespace cgsr::sim {
 using hal::CaptureFailure;
 
 SimulatedCamera::SimulatedCamera(const hal::CameraMode& mode, Duration delay, MonoTime end,
-                                 std::vector<CameraEventSpec> script, Draw draw)
-    : mode_(mode), delay_(delay), end_(end), script_(std::move(script)), draw_(std::move(draw)) {
+                                 std::vector<CameraEventSpec> script, Draw draw, Now now)
+    : mode_(mode), delay_(delay), end_(end), script_(std::move(script)), draw_(std::move(draw)), now_(std::move(now)) {
   const std::size_t bytes = 2 * static_cast<std::size_t>(mode.width_px) * static_cast<std::size_t>(mode.height_px);
   pixels_.assign(kSlots, std::vector<std::uint8_t>(bytes));
   freezes_ = std::any_of(script_.begin(), script_.end(),
@@ -21,12 +21,12 @@ SimulatedCamera::SimulatedCamera(const hal::CameraMode& mode, Duration delay, Mo
 
 Result<hal::CameraMode> SimulatedCamera::start() {
   if (started_) return fail("the simulated camera is already started");
-  if (happening(CameraTrouble::kGone, now_) != nullptr) {
-    return fail(
-        fmt::format("the simulated camera is gone at {:.2f} s, by script", to_seconds(now_.time_since_epoch())));
+  const MonoTime now = now_();
+  if (happening(CameraTrouble::kGone, now) != nullptr) {
+    return fail(fmt::format("the simulated camera is gone at {:.2f} s, by script", to_seconds(now.time_since_epoch())));
   }
   // What fell due while it was stopped was never exposed.
-  while (stamp_of(next_) < now_) ++next_;
+  while (stamp_of(next_) < now) ++next_;
   first_ = next_;
   problem_.clear();
   started_ = true;
@@ -35,7 +35,6 @@ Result<hal::CameraMode> SimulatedCamera::start() {
 
 tl::expected<ImageLease, CaptureFailure> SimulatedCamera::next_image(MonoTime give_up_at) {
   if (!started_) return failure(CaptureFailure::kDisconnected, "the simulated camera is not started");
-  now_ = std::max(now_, give_up_at);
   for (;;) {
     const MonoTime stamp = stamp_of(next_);
     if (stamp >= end_) return failure(CaptureFailure::kEndOfStream, "the scenario is over");

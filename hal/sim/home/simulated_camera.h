@@ -27,10 +27,12 @@ class SimulatedCamera final : public hal::Camera, private ImageLender {
  public:
   /// Draws the image that is exposed from `stamp` on. \param number  counts images from 0, whatever became of them.
   using Draw = std::function<void(std::uint64_t number, MonoTime stamp, const YuyvBuffer& buffer)>;
+  /// What time it is in the simulated world.
+  using Now = std::function<MonoTime()>;
 
   /// \param end  no image is exposed from then on: the stream ends.
   SimulatedCamera(const hal::CameraMode& mode, Duration delay, MonoTime end, std::vector<CameraEventSpec> script,
-                  Draw draw);
+                  Draw draw, Now now);
 
   Result<hal::CameraMode> start() override;
   tl::expected<ImageLease, hal::CaptureFailure> next_image(MonoTime give_up_at) override;
@@ -53,12 +55,12 @@ class SimulatedCamera final : public hal::Camera, private ImageLender {
   MonoTime end_;
   std::vector<CameraEventSpec> script_;
   Draw draw_;
+  Now now_;
   std::vector<std::vector<std::uint8_t>> pixels_;  // [slot]
   std::vector<std::uint8_t> last_pixels_;          // kept only for a script that freezes
   bool freezes_ = false;
   std::atomic<std::uint32_t> free_{(1U << kSlots) - 1};  // bit i: slot i is free
   std::atomic<bool> started_{false};
-  MonoTime now_{};           // the latest time that anybody asked for
   std::uint64_t next_ = 0;   // number of the next image
   std::uint64_t first_ = 0;  // number of the image whose sequence is 0
   std::string problem_;

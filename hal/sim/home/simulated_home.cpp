@@ -167,7 +167,8 @@ std::unique_ptr<hal::Camera> SimulatedHome::take_camera() {
   const hal::CameraMode mode{camera_.width_px, camera_.height_px, PixelFormat::kYuyv, seconds(1.0 / camera_.rate_hz)};
   return std::make_unique<SimulatedCamera>(
       mode, image_delay_, at_seconds(scenario_.spec.ends_at_s), scenario_.spec.camera_event,
-      [this](std::uint64_t number, MonoTime stamp, const YuyvBuffer& buffer) { take_image(number, stamp, buffer); });
+      [this](std::uint64_t number, MonoTime stamp, const YuyvBuffer& buffer) { take_image(number, stamp, buffer); },
+      [this] { return now_.load(); });
 }
 
 std::unique_ptr<hal::Switches> SimulatedHome::take_switches() {
@@ -175,6 +176,7 @@ std::unique_ptr<hal::Switches> SimulatedHome::take_switches() {
 }
 
 void SimulatedHome::advance_to(MonoTime time) {
+  now_ = std::max(now_.load(), time);
   switches_->advance_to(time);
   segway_.base().advance_to(time);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -63,6 +64,7 @@ class SimulatedHome final : public hal::Simulation {
   CameraModel camera_;
   SensorSettings sensor_;
   Duration image_delay_{};
+  std::atomic<MonoTime> now_{MonoTime{}};
   std::unique_ptr<Photographer> photographer_;
   hal::Plan plan_;
   mutable std::mutex truth_mutex_;
