@@ -57,8 +57,8 @@ Report sample_with_stripe() {
 TEST(Stripe, StandsInTheTextStepByStepWithNoneWhereNothingWasSeen) {
   const std::string text = to_text(sample_with_stripe());
 
-  EXPECT_NE(text.find("0  1.00 0.80 0.60    0.90 0.80 0.70"), std::string::npos) << text;
-  EXPECT_NE(text.find("1  none              0.60 0.70 0.80"), std::string::npos) << text;
+  EXPECT_NE(text.find("0  1.00 0.80 0.60      0.90 0.80 0.70"), std::string::npos) << text;
+  EXPECT_NE(text.find("1  none                0.60 0.70 0.80"), std::string::npos) << text;
 }
 
 TEST(Stripe, IsDrawnAsItsColorsAndLeavesAGapWhereNothingWasSeen) {

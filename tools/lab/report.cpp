@@ -61,13 +61,13 @@ namespace {
 /// A line per step, a column per band.
 std::string to_text(const Stripe& stripe) {
   std::string text = fmt::format("  {}\n  {:>4}", stripe.title, "");
-  for (const auto& band : stripe.bands) text += fmt::format("  {:16}", band.name);
+  for (const auto& band : stripe.bands) text += fmt::format("  {:18}", band.name);
   for (std::size_t step = 0; step < stripe.bands.front().colors.size(); ++step) {
     text += fmt::format("\n  {:4}", step);
     for (const auto& band : stripe.bands) {
       const auto& light = band.colors[step];
-      text += light ? fmt::format("  {:.2f} {:.2f} {:.2f}  ", light->r, light->g, light->b)
-                    : fmt::format("  {:16}", "none");
+      text += light ? fmt::format("  {:.2f} {:.2f} {:.2f}    ", light->r, light->g, light->b)
+                    : fmt::format("  {:18}", "none");
     }
   }
   return text + "\n";

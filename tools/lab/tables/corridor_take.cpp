@@ -78,6 +78,7 @@ class Booking {
     take_.real[second] = real;
     take_.estimated[second] = stripe_.add(MonoTime{} + seconds(number / CorridorFilm::kRate_hz), seen.light);
     if (!seen.light) return;
+    take_.exact[second] = seen.exact_light;
     take_.light_error += mean_error(*seen.light, real);
     take_.exact_error += mean_error(seen.exact_light.value_or(*seen.light), real);
     ++take_.lights;

@@ -31,6 +31,7 @@ struct CorridorTake {
 
   // Light in the tracker's terms: relative to what Alg. 3.1 assumed at learning, encoded.
   Lights estimated;  ///< by ours: the plurality of each second
+  Lights exact;      ///< by ours: the last estimate in each second, not bound to the grid
   Lights real;       ///< on the shirt, in the last image of each second
   double light_error = 0.0,
          exact_error = 0.0;  ///< sums over images of the mean over channels: on the grid, and between its lights

@@ -101,10 +101,11 @@ void add_seconds(const Takes& takes, std::uint64_t seed, Report& report) {
 
 Stripe stripe_of(const CorridorTake& take) {
   Stripe stripe{"Light on the shirt in each second of the first take, relative to what Alg. 3.1 assumed at learning",
-                {{"estimated", {}}, {"true", {}}}};
+                {{"plurality, grid", {}}, {"between its lights", {}}, {"true", {}}}};
   for (std::size_t s = 0; s < take.real.size(); ++s) {
     stripe.bands[0].colors.push_back(take.estimated[s]);
-    stripe.bands[1].colors.push_back(take.real[s]);
+    stripe.bands[1].colors.push_back(take.exact[s]);
+    stripe.bands[2].colors.push_back(take.real[s]);
   }
   return stripe;
 }
