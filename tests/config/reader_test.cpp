@@ -79,6 +79,8 @@ TEST(Reader, RefusesTheWrongType) {
             "robot.toml:2: stage.track.budget_us is \"fast\", a text; a whole number is wanted");
   EXPECT_EQ(problems("[stage.track]\nbudget_us = 700.5\n"),
             "robot.toml:2: stage.track.budget_us is 700.5, a number with a point; a whole number is wanted");
+  EXPECT_NE(problems("[stage.track]\nbudget_us = 700.0\n"), "") << "whole, but not written so";
+  EXPECT_NE(problems("[stage.track]\nevery_frames = true\n"), "");
   EXPECT_EQ(problems("[area]\nto_m = true\n"), "robot.toml:2: area.to_m is true, true or false; a number is wanted");
   EXPECT_EQ(problems("armed = 1\n"), "robot.toml:1: armed is 1, a whole number; true or false is wanted");
   EXPECT_EQ(problems("name = [1, 2]\n"), "robot.toml:1: name is a list; a text is wanted");

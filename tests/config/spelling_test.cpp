@@ -18,9 +18,10 @@ TEST(Nearest, FindsSlipsOfTheFinger) {
 
 TEST(Nearest, SaysNothingWhenNothingIsNear) {
   EXPECT_EQ(nearest("colour", {"budget_us", "skip"}), "");
+  EXPECT_EQ(nearest("phone", {"phase", "skip"}), "") << "two letters of five are too many";
   EXPECT_EQ(nearest("", {"budget_us", "skip"}), "");
   EXPECT_EQ(nearest("budget_us", {}), "");
-  EXPECT_EQ(nearest(std::string(60000, 'a'), {"budget_us"}), "") << "and takes no time over it";
+  EXPECT_EQ(nearest(std::string(60000, 'a'), {"budget_us"}), "");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ struct Sighting {
   std::optional<Box> box;      ///< empty: not found
   std::optional<Light> light;  ///< of the grid, under which the object was recognised; empty: not found, or no estimate
   std::optional<Light> exact_light;  ///< the same between the grid's lights
+  double divergence = 0.0;           ///< [nat] of the box from what was learned; 0 where the tracker knows none
 };
 
 /// Whatever learns an object from one box of one image and then says where it is. Ours and the peers behind one face, so that a

@@ -41,7 +41,7 @@ class OurTracker final : public BoxTracker {
     const color::TrackedObject object = tracker_->track(view, *reduced_, matches, budget);
     count_stage_end("track");
     if (!object.found) return {};
-    return {object.box, object.light, object.exact_light};
+    return {object.box, object.light, object.exact_light, object.divergence};
   }
 
  private:

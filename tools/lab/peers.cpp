@@ -50,7 +50,7 @@ class CamShift final : public BoxTracker {
     cv::calcBackProject(&hsv, 1, kChannels.data(), histogram_, projection, ranges_.data());
     const auto until = cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 1);
     cv::CamShift(projection, window_, until);
-    if (window_.area() > 1) return {box_of(window_), {}, {}};
+    if (window_.area() > 1) return {.box = box_of(window_), .light = {}, .exact_light = {}};
     restart_around_the_loss(projection.size());
     return {};
   }
@@ -92,7 +92,7 @@ class FilterTracker final : public BoxTracker {
     const MarkedStage stage;
     cv::Rect rect;
     if (!tracker_->update(image.bgr, rect) || rect.empty()) return {};
-    return {box_of(rect), {}, {}};
+    return {.box = box_of(rect), .light = {}, .exact_light = {}};
   }
 
  private:

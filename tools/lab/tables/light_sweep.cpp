@@ -41,6 +41,7 @@ struct Draw {
 struct Tally {
   std::vector<double> precision, recall, iou, found;
   std::vector<double> light_error, exact_error, constant_error;  // mean over the channels, where found
+  std::vector<double> divergence;                                // of hits
   int nearest = 0, constant_nearest = 0;
 };
 
@@ -97,6 +98,7 @@ void try_present(const Setting& setting, const Contender& contender, std::uint64
     sum.iou += score.iou / draw.scenes;
     found += score.found ? 1.0 / draw.scenes : 0.0;
     book_light(seen, light, tally);
+    if (score.success) tally.divergence.push_back(seen.divergence);
   }
   tally.precision.push_back(sum.precision);
   tally.recall.push_back(sum.recall);
@@ -165,9 +167,9 @@ void sweep_brightness(const Setting& setting, int trials, Report& report) {
   }
 }
 
-/// Scenes without the object, under light inside the range. \return in how many of them something was found.
-int false_positives(const Setting& setting, const Contender& contender, int trials) {
-  int count = 0;
+/// Scenes without the object, under light inside the range. \return the divergence of every box that was found in one.
+std::vector<double> finds_without_object(const Setting& setting, const Contender& contender, int trials) {
+  std::vector<double> divergences;
   for (int i = 0; i < trials; ++i) {
     const std::uint64_t trial = 200000 + static_cast<std::uint64_t>(i);
     const ObjectWorld world(Random::mix(setting.seed) + trial);
@@ -175,28 +177,46 @@ int false_positives(const Setting& setting, const Contender& contender, int tria
     std::optional<Box> truth;
     const Image image = world.scene(0, random_light(kLow, kHigh, random), false, 1.0, truth);
     const auto tracker = learned(contender, world, setting.configuration, Start::kAnywhere);
-    count += tracker && tracker->track(image).box.has_value();
+    const Sighting seen = tracker ? tracker->track(image) : Sighting{};
+    if (seen.box) divergences.push_back(seen.divergence);
   }
-  return count;
+  return divergences;
 }
 
-/// The known weakness of 3.2.1: the darker the lights that are simulated, the more that is not the object looks like it.
+/// The threshold under which a tracker would keep 95 % of what it hits with the light inside the range.
+double tight_threshold(const Setting& setting, const Contender& contender, int trials) {
+  auto hits = try_many(setting, contender, 0, trials, Draw{}).divergence;
+  if (hits.empty()) return 0.0;
+  std::ranges::sort(hits);
+  return hits[hits.size() * 95 / 100];
+}
+
+/// The known weakness of 3.2.1: the darker the lights that are simulated, the more that is not the object looks like it. The shipped
+/// threshold is generous, since more than it decides; at a tight one the weakness of the histograms themselves is seen.
 void sweep_lower_bound(const Setting& setting, int trials, Report& report) {
   Plot plot{"Scenes without the object in which one is found, as the lower bound of the light rises",
             "lower bound",
             "share",
             {}};
   for (const Contender& contender : kContenders) {
-    Curve curve{std::string(contender.name), {}};
+    const std::array thresholds{setting.configuration.track.max_divergence,
+                                tight_threshold(setting, contender, trials)};
+    std::array<Curve, 2> curves;
     for (int tenths = 2; tenths <= 6; ++tenths) {
       Setting wider = setting;
       wider.configuration.learn.lights.lowest = tenths / 10.0;
-      const std::string row = fmt::format("{}, lower bound {:.1f}, object absent", contender.name, tenths / 10.0);
-      setting.progress(row);
-      report.rows.push_back(share_row(row, "false positives", false_positives(wider, contender, trials), trials));
-      curve.points.push_back({tenths / 10.0, *report.rows.back().ours, report.rows.back().interval});
+      setting.progress(fmt::format("{}, object absent, lower bound {:.1f}", contender.name, tenths / 10.0));
+      const auto finds = finds_without_object(wider, contender, trials);
+      for (std::size_t i = 0; i < thresholds.size(); ++i) {
+        const auto count = std::ranges::count_if(finds, [&](double divergence) { return divergence <= thresholds[i]; });
+        report.rows.push_back(share_row(fmt::format("{}, object absent, threshold {:.3f} nat, lower bound {:.1f}",
+                                                    contender.name, thresholds[i], tenths / 10.0),
+                                        "false positives", static_cast<int>(count), trials));
+        curves[i].name = fmt::format("{}, {:.2f} nat", contender.name, thresholds[i]);
+        curves[i].points.push_back({tenths / 10.0, *report.rows.back().ours, report.rows.back().interval});
+      }
     }
-    plot.curves.push_back(std::move(curve));
+    plot.curves.insert(plot.curves.end(), curves.begin(), curves.end());
   }
   report.plots.push_back(std::move(plot));
 }
@@ -223,6 +243,8 @@ Result<Report> light_sweep(const Setting& setting) {
       "clutter, place, noise (sigma 1 to 4 of 255) and blur (sigma 0 to 1 px); the tracker has no prior, but for the "
       "scenes in a "
       "row, which it takes for a film.",
+      "False positives are counted at the shipped threshold of divergence and at the one that would keep 95 % of the "
+      "hits.",
       "Plain is the dissertation's Alg. 3.2 with the same learned histograms and threshold, one window size, strides "
       "as ours."};
   return report;
