@@ -14,8 +14,6 @@ using imaging::kGridArea;
 using imaging::RealGrid;
 
 constexpr int kShapeCell_px = 2;
-constexpr imaging::PatchSize kShapePatch{kGrid * kShapeCell_px, kGrid* kShapeCell_px};
-constexpr imaging::PatchSize kCellPatch{kGrid, kGrid};
 constexpr double kLeastInner = 0.3;  // of the box's side, however thin the box is
 // What follow_light believes: brighter or darker than that is a cut in the film or a covered lens, not a lamp.
 constexpr double kMostGain = 2.0;
