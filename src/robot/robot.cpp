@@ -145,12 +145,15 @@ Result<void> Robot::run(StopRequest& stop) {
     done = run_live(stop);
   } else {
     run_lock_step(stop);
+    done = camera_outcome();
   }
   housekeeping_->finish();
-  if (done && links_.camera_lost.load(std::memory_order_acquire)) {
-    return fail(fmt::format("camera: {}", camera_->last_problem()));
-  }
   return done;
+}
+
+Result<void> Robot::camera_outcome() const {
+  if (!links_.camera_lost.load(std::memory_order_acquire)) return {};
+  return fail(fmt::format("camera: {}", camera_->last_problem()));
 }
 
 }  // namespace cgsr::robot

@@ -59,6 +59,8 @@ class Robot {
 
   void run_lock_step(StopRequest& stop);
   Result<void> run_live(StopRequest& stop);
+  /// \return what became of the camera. To be asked before the camera is told to stop, which counts as lost too.
+  [[nodiscard]] Result<void> camera_outcome() const;
 
   config::Robot config_;
   RunOptions options_;
