@@ -1,0 +1,108 @@
+// The closed loop as a user starts it: the robot's program, the simulator beside it, and what truth says about the run.
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+class RunSimulated : public ::testing::Test {
+ protected:
+  /// The shipped robot with images of half the size.
+  std::string small_robot(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+    auto text = read_text(CGSR_SOURCE_DIR "/config/robots/sim-home.toml");
+    const std::vector<std::pair<std::string, std::string>> halves{
+        {"\nfx_px = 601.8", "\nfx_px = 300.9"},
+        {"\nfy_px = 579.4", "\nfy_px = 289.7"},
+        {"\ncx_px = 319.5", "\ncx_px = 159.5"},
+        {"\ncy_px = 239.5", "\ncy_px = 119.5"},
+        {"\nx_px = 236", "\nx_px = 118"},
+        {"\ny_px = 250", "\ny_px = 125"},
+        {"\nwidth_px = 67", "\nwidth_px = 33"},
+        {"\nheight_px = 128", "\nheight_px = 64"},
+        {"\nwidth_px = 640", "\nwidth_px = 320"},
+        {"\nheight_px = 480", "\nheight_px = 240"},
+        {"\"../scenarios", "\"" CGSR_SOURCE_DIR "/config/scenarios"}};
+    for (const auto& [from, to] : halves) replace(text, from, to);
+    for (const auto& [from, to] : changes) replace(text, from, to);
+    const std::string file = scratch_ / ("robot" + std::to_string(++robots_) + ".toml");
+    write_text(file, text);
+    return file;
+  }
+
+  nlohmann::json run(const std::string& config, const std::string& duration_s, std::vector<std::string> more = {}) {
+    std::vector<std::string> words{"run",    "--config",           config, "--duration", duration_s,
+                                   "--json", scratch_ / "run.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto outcome = run_cgsr(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    return outcome.exit_code == 0 ? nlohmann::json::parse(read_text(scratch_ / "run.json")) : nlohmann::json{};
+  }
+
+  ScratchFolder scratch_;
+  int robots_ = 0;
+};
+
+// Learned from the first image, armed by a switch, followed over a way that turns twice, while the lamp dims and turns bluish.
+TEST_F(RunSimulated, FindsAndFollowsTheCartThroughChangingLight) {
+  const auto summary = run(small_robot(), "15", {"--video", scratch_ / "run.avi"});
+  const auto truth = summary["truth"];
+  EXPECT_GE(truth["in_view_share"], 0.95);
+  EXPECT_GE(truth["found_right_share"], 0.95);
+  EXPECT_GE(truth["nearest_by_own_motion"], 0.8);
+  EXPECT_LE(truth["fastest_object_mps"], 0.5);
+  EXPECT_GT(summary["motion"]["odometry"][0], 0.5) << "it did not drive: the test says nothing";
+  EXPECT_EQ(summary["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
+  EXPECT_GT(std::filesystem::file_size(scratch_ / "run.avi"), 1000000u);
+}
+
+TEST_F(RunSimulated, TheSameBytesOnOneThreadAndOnTwoAndOthersForAnotherSeed) {
+  const auto two = run(small_robot(), "3");
+  const auto one = run(small_robot({{"\nthreads = 2", "\nthreads = 1"}}), "3");
+  EXPECT_EQ(one["inputs_sha256"], two["inputs_sha256"]);
+  EXPECT_EQ(one["outputs_sha256"], two["outputs_sha256"]);
+  EXPECT_EQ(one["truth"], two["truth"]);
+  EXPECT_NE(run(small_robot(), "3", {"--seed", "2"})["inputs_sha256"], two["inputs_sha256"]);
+}
+
+// The robot's program must start and drive where there is no ray tracer.
+TEST_F(RunSimulated, TheProgramLinksNoRayTracer) {
+  const std::string list = scratch_ / "needed";
+  ASSERT_EQ(std::system(("ldd " CGSR_PROGRAM " > " + list).c_str()), 0);
+  EXPECT_THAT(read_text(list), HasSubstr("libopencv_core"));
+  for (const char* const library : {"embree", "assimp"}) EXPECT_THAT(read_text(list), Not(HasSubstr(library)));
+}
+
+TEST_F(RunSimulated, APlugInThatIsMissingForeignOrOfAnotherVersionIsNamed) {
+  const auto refusal = [&](const std::string& plug_in) {
+    const auto outcome =
+        run_cgsr({"run", "--config", small_robot({{"plug_in = \"\"", "plug_in = \"" + plug_in + "\""}})});
+    EXPECT_EQ(outcome.exit_code, 1);
+    return outcome.errors;
+  };
+  EXPECT_THAT(refusal("/nowhere/sim.so"), HasSubstr("/nowhere/sim.so: cannot open shared object file"));
+  EXPECT_THAT(refusal(CGSR_FOREIGN_PLUGIN), HasSubstr("is no simulator of this program"));
+  EXPECT_THAT(refusal(CGSR_OLD_PLUGIN), HasSubstr("is a simulator of version 0, this program needs version"));
+}
+
+TEST_F(RunSimulated, LiveThreadsAndASimulatedHomeDoNotGoTogether) {
+  const auto outcome = run_cgsr({"run", "--config", small_robot({{"\"lock_step\"", "\"live\""}})});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("lock_step or real_time"));
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
