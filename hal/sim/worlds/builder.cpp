@@ -231,13 +231,14 @@ void WorldBuilder::add_lamp(const LampSpec& spec) {
       lamp.carried_by = carrier->second;
     }
   }
-  if (lamp.visible && lamp.radius_m > 0.0) {
+  const double glass_m = lamp.radius_m > 0.0 ? lamp.radius_m : spec.globe_radius_m;
+  if (lamp.visible && glass_m > 0.0) {
     Material glass;
     glass.name = spec.name + " glass";
     glass.albedo = Rgb::Constant(0.8F);
     Part part;
     part.name = spec.name;
-    part.mesh = make_sphere(lamp.radius_m);
+    part.mesh = make_sphere(glass_m);
     part.mesh.transform(pose_at(lamp.p_WL));
     part.material = world_.scene.add_material(glass);
     part.figure = lamp.carried_by;

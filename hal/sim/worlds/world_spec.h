@@ -29,6 +29,7 @@ struct LampSpec {
   Triple color{1.0, 0.93, 0.82};
   double lumens = 800.0;
   double bounce = 0.0;
+  double globe_radius_m = 0.0;
   bool visible = true;
   bool on = true;
   std::string switch_name;
@@ -44,7 +45,9 @@ struct LampSpec {
     visit.numbers("color", self.color, {0.0, 1.0}, "", "linear red, green and blue, the brightest carries the lumens");
     visit.number("lumens", self.lumens, {0.0, 1e9}, "lm", "light in all directions together");
     visit.number("bounce", self.bounce, {0.0, 1.0}, "1/m^2", "ambient lux per lumen that walls send back");
-    visit.flag("visible", self.visible, "a ball that is seen glowing");
+    visit.number("globe_radius_m", self.globe_radius_m, {0.0, 1.0}, "m",
+                 "of the glass that is seen around a point; shadows stay hard; 0: none");
+    visit.flag("visible", self.visible, "a ball or globe that is seen glowing");
     visit.flag("on", self.on, "when no switch is named");
     visit.text("switch", self.switch_name, "the line that switches it");
     visit.text("carried_by", self.carried_by, "the robot that it is mounted on");
