@@ -22,7 +22,7 @@ struct ColorPatch {
 void relight(ColorPatch& patch, const Light& gain);
 
 /// How likely a pixel belongs to the object, by its colour: the share of the object among object and surroundings in its histogram bin
-/// (Bayes with equal priors; chapter 6's positives and negatives per pixel). 16 x 32 x 32 bins of Y, U, V.
+/// (Bayes with equal priors; chapter 6's positives and negatives per pixel). 8 x 32 x 32 bins of Y, U, V.
 class ColorLikelihood {
  public:
   ColorLikelihood();
@@ -34,9 +34,9 @@ class ColorLikelihood {
   [[nodiscard]] float of(std::uint8_t y, std::uint8_t u, std::uint8_t v) const { return likelihood_[bin_of(y, u, v)]; }
 
  private:
-  static constexpr std::size_t kBins = std::size_t{16} * 32 * 32;
+  static constexpr std::size_t kBins = std::size_t{8} * 32 * 32;
   static std::size_t bin_of(std::uint8_t y, std::uint8_t u, std::uint8_t v) {
-    return static_cast<std::size_t>((y >> 4) << 10 | (u >> 3) << 5 | v >> 3);
+    return static_cast<std::size_t>((y >> 5) << 10 | (u >> 3) << 5 | v >> 3);
   }
 
   std::vector<float> object_, surroundings_, likelihood_;

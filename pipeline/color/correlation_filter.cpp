@@ -15,6 +15,37 @@ float hann(int i) {
   return static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (i + 0.5) / kGrid));
 }
 
+/// exp(-2 pi i k d / 32) for every frequency k, those above the middle being negative ones.
+struct Phases {
+  std::array<float, kGrid> re;
+  std::array<float, kGrid> im;
+  explicit Phases(double displacement) {
+    for (int k = 0; k < kGrid; ++k) {
+      const int frequency = k < kGrid / 2 ? k : k - kGrid;
+      const double angle = -2.0 * std::numbers::pi * frequency * displacement / kGrid;
+      re[static_cast<std::size_t>(k)] = static_cast<float>(std::cos(angle));
+      im[static_cast<std::size_t>(k)] = static_cast<float>(std::sin(angle));
+    }
+  }
+};
+
+/// The spectrum of the same grid moved by (dx, dy) cells.
+imaging::Spectrum displaced(const imaging::Spectrum& spectrum, double dx, double dy) {
+  const Phases columns(dx);
+  const Phases rows(dy);
+  imaging::Spectrum moved;
+  for (std::size_t y = 0; y < kGrid; ++y) {
+    for (std::size_t x = 0; x < kGrid; ++x) {
+      const std::size_t i = y * kGrid + x;
+      const float re = columns.re[x] * rows.re[y] - columns.im[x] * rows.im[y];
+      const float im = columns.re[x] * rows.im[y] + columns.im[x] * rows.re[y];
+      moved.re[i] = spectrum.re[i] * re - spectrum.im[i] * im;
+      moved.im[i] = spectrum.re[i] * im + spectrum.im[i] * re;
+    }
+  }
+  return moved;
+}
+
 /// Where a parabola through three neighbours peaks, relative to the middle one.
 double vertex(double before, double at, double after) {
   const double curvature = before - 2.0 * at + after;
@@ -46,14 +77,18 @@ void CorrelationFilter::begin(const FilterFeatures& features, double object_cell
   for (auto& channel : numerator_) channel = {};
   denominator_.fill(0.0F);
   transform(features);
-  absorb(1.0F);
+  absorb(target_, 1.0F);
   first_numerator_ = numerator_;
   first_denominator_ = denominator_;
 }
 
 void CorrelationFilter::learn(const FilterFeatures& features) {
   transform(features);
-  absorb(static_cast<float>(parameters_.learning_rate));
+  absorb(target_, static_cast<float>(parameters_.learning_rate));
+}
+
+void CorrelationFilter::learn_last(double dx, double dy) {
+  absorb(displaced(target_, dx, dy), static_cast<float>(parameters_.learning_rate));
 }
 
 void CorrelationFilter::forget() {
@@ -73,15 +108,15 @@ void CorrelationFilter::transform(const FilterFeatures& features) {
   }
 }
 
-void CorrelationFilter::absorb(float rate) {
+void CorrelationFilter::absorb(const imaging::Spectrum& target, float rate) {
   const float keep = 1.0F - rate;
   RealGrid power{};
   for (std::size_t k = 0; k < features_.size(); ++k) {
     const auto& f = features_[k];
     auto& a = numerator_[k];
     for (std::size_t i = 0; i < kGridArea; ++i) {
-      a.re[i] = keep * a.re[i] + rate * (target_.re[i] * f.re[i] + target_.im[i] * f.im[i]);
-      a.im[i] = keep * a.im[i] + rate * (target_.re[i] * f.im[i] - target_.im[i] * f.re[i]);
+      a.re[i] = keep * a.re[i] + rate * (target.re[i] * f.re[i] + target.im[i] * f.im[i]);
+      a.im[i] = keep * a.im[i] + rate * (target.re[i] * f.im[i] - target.im[i] * f.re[i]);
       power[i] += f.re[i] * f.re[i] + f.im[i] * f.im[i];
     }
   }

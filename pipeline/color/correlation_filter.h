@@ -44,6 +44,10 @@ class CorrelationFilter {
   /// Learns a further patch in which the object is in the middle.
   void learn(const FilterFeatures& features);
 
+  /// The same of the patch that respond() was last asked about, without transforming it again. \param dx, dy  [cells] of the object's centre
+  /// from the middle: a displacement is a turn of the spectrum's phase.
+  void learn_last(double dx, double dy);
+
   /// Back to what begin() learned.
   void forget();
 
@@ -53,7 +57,7 @@ class CorrelationFilter {
  private:
   using Spectra = std::array<imaging::Spectrum, kFilterChannels>;
   void transform(const FilterFeatures& features);
-  void absorb(float rate);
+  void absorb(const imaging::Spectrum& target, float rate);
 
   CorrelationParameters parameters_;
   imaging::RealGrid window_;

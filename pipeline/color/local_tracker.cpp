@@ -70,6 +70,38 @@ Box LocalTracker::object_in_patch(double margin) const {
   return {0.5 * (kPatch_px - inner_width), 0.5 * (kPatch_px - inner_height), inner_width, inner_height};
 }
 
+/// The same in the patch around `taken` for an object that is at `box`.
+Box LocalTracker::object_in_patch(double margin, const Box& box, const Box& taken) const {
+  Box object = object_in_patch(margin);
+  const Displacement moved = displacement(box, taken);
+  object.x += moved.x * kPatch_px / kGrid;
+  object.y += moved.y * kPatch_px / kGrid;
+  return object;
+}
+
+/// How far the centre of `box` is from that of `taken`, in cells of the patch around the latter.
+LocalTracker::Displacement LocalTracker::displacement(const Box& box, const Box& taken) const {
+  const Box region = region_of(taken);
+  return {(box.x + 0.5 * box.width - taken.x - 0.5 * taken.width) * kGrid / region.width,
+          (box.y + 0.5 * box.height - taken.y - 0.5 * taken.height) * kGrid / region.height};
+}
+
+/// Whether the patch at hand shows `box` nearly in its middle and in its size, so that no other needs to be taken.
+bool LocalTracker::patch_shows(const imaging::Pyramid& image, const Box& box) const {
+  constexpr double kMostCells = 2.0;    // the window still weighs more than 0.9 there
+  constexpr double kMostGrowth = 0.02;  // less than a step of the scales
+  if (taken_build_ != image.builds()) return false;
+  const Displacement moved = displacement(box, taken_);
+  return std::max(std::abs(moved.x), std::abs(moved.y)) <= kMostCells &&
+         std::abs(box.width / taken_.width - 1.0) <= kMostGrowth;
+}
+
+void LocalTracker::take_patch(const imaging::Pyramid& image, const Box& box) {
+  take_colors(image, box, patch_);
+  taken_ = box;
+  taken_build_ = image.builds();
+}
+
 void LocalTracker::take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const {
   const Box region = region_of(box);
   image.sample_luma(region, patch.size, patch.y);
@@ -101,10 +133,16 @@ void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
 }
 
 void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, patch_);
-  colors_.learn(patch_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), parameters_.color_rate);
-  take_features(patch_);
-  shape_.learn(features_);
+  if (patch_shows(image, box)) {
+    const Displacement moved = displacement(box, taken_);
+    shape_.learn_last(moved.x, moved.y);
+  } else {
+    take_patch(image, box);
+    take_features(patch_);
+    shape_.learn(features_);
+  }
+  colors_.learn(patch_, object_in_patch(parameters_.inner_margin, box, taken_), object_in_patch(0.0, box, taken_),
+                parameters_.color_rate);
   scale_.learn(image, box);
 }
 
@@ -115,13 +153,14 @@ void LocalTracker::forget() {
 }
 
 LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, patch_);
+  take_patch(image, box);
   return answer_from_patch(colors_, box);
 }
 
 LocalAnswer LocalTracker::look_under(const Light& gain, const imaging::Pyramid& image, const Box& box) {
   take_colors(image, box, patch_);
   relight(patch_, without_light({1.0, 1.0, 1.0}, gain));
+  taken_build_ = 0;  // what lies there now is not what the image shows
   return answer_from_patch(learned_colors_, box);
 }
 
@@ -185,7 +224,10 @@ void LocalTracker::score_colors(const ColorLikelihood& colors, RealGrid& score) 
 }
 
 void LocalTracker::remember(const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, remembered_);
+  if (!patch_shows(image, box)) take_patch(image, box);
+  remembered_ = patch_;
+  remembered_taken_ = taken_;
+  remembered_box_ = box;
   remembered_mean_ = image.mean();
 }
 
@@ -201,7 +243,8 @@ void LocalTracker::follow_light(const imaging::Pyramid& image) {
   if (largest > kMostGain || least < kLeastGain) return;
   relit_ = remembered_;
   relight(relit_, gain);
-  colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), parameters_.light_rate);
+  colors_.learn(relit_, object_in_patch(parameters_.inner_margin, remembered_box_, remembered_taken_),
+                object_in_patch(0.0, remembered_box_, remembered_taken_), parameters_.light_rate);
 }
 
 }  // namespace cgsr::color

@@ -90,6 +90,14 @@ class LocalTracker {
 
   [[nodiscard]] Box region_of(const Box& box) const;
   [[nodiscard]] Box object_in_patch(double margin) const;
+  struct Displacement {
+    double x = 0.0;
+    double y = 0.0;
+  };
+  [[nodiscard]] Box object_in_patch(double margin, const Box& box, const Box& taken) const;
+  [[nodiscard]] Displacement displacement(const Box& box, const Box& taken) const;
+  [[nodiscard]] bool patch_shows(const imaging::Pyramid& image, const Box& box) const;
+  void take_patch(const imaging::Pyramid& image, const Box& box);
   void take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const;
   void take_features(const ColorPatch& patch);
   LocalAnswer answer_from_patch(const ColorLikelihood& colors, const Box& box);
@@ -104,8 +112,12 @@ class LocalTracker {
   ColorLikelihood colors_;
   ColorLikelihood learned_colors_;  ///< as begin() learned them.
   ColorPatch patch_;
-  ColorPatch learned_;     ///< of the first image.
-  ColorPatch remembered_;  ///< of the last image in which it was seen.
+  Box taken_;                      ///< around which patch_ was taken,
+  std::uint64_t taken_build_ = 0;  ///< and in which image; 0: not as the image shows it.
+  ColorPatch learned_;             ///< of the first image.
+  ColorPatch remembered_;          ///< of the last image in which it was seen,
+  Box remembered_taken_;           ///< around where,
+  Box remembered_box_;             ///< with the object there.
   ColorPatch relit_;
   imaging::Pyramid::Mean remembered_mean_;
   std::vector<float> integral_;

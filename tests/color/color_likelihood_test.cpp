@@ -47,7 +47,7 @@ class NaiveLikelihood {
         }
       }
     }
-    for (int bin = 0; bin < 16 * 32 * 32; ++bin) {
+    for (int bin = 0; bin < 8 * 32 * 32; ++bin) {
       blend(object_, bin, in.contains(bin) ? in[bin] / count_in : 0.0, rate);
       blend(around_, bin, out.contains(bin) ? out[bin] / count_out : 0.0, rate);
     }
@@ -58,7 +58,7 @@ class NaiveLikelihood {
   }
 
  private:
-  static int bin_of(int y, int u, int v) { return (y / 16 * 32 + u / 8) * 32 + v / 8; }
+  static int bin_of(int y, int u, int v) { return (y / 32 * 32 + u / 8) * 32 + v / 8; }
   static void blend(std::map<int, double>& shares, int bin, double share, double rate) {
     if (share > 0.0 || shares.contains(bin)) shares[bin] += rate * (share - shares[bin]);
   }

@@ -154,6 +154,30 @@ TEST(CorrelationFilterProperty, PeaksWhereTheObjectMoved) {
   }
 }
 
+// A patch in which the object is beside the middle teaches the same, when the filter is told where the object is.
+TEST(CorrelationFilterProperty, LearnsTheLastPatchWhereTheObjectIs) {
+  std::mt19937 random(55);
+  for (const auto& [dx, dy] : {std::pair{0, 0}, {2, 0}, {0, -2}, {-1, 2}}) {
+    const World world(random);
+    const World learned(random);
+    CorrelationParameters parameters;
+    parameters.learning_rate = 0.5;
+    parameters.anchor = 0.0;
+    const auto filter = std::make_unique<CorrelationFilter>(parameters);
+    filter->begin(world.moved(0, 0), 10.0);
+    RealGrid response;
+    for (int i = 0; i < 12; ++i) {
+      filter->respond(learned.moved(dx, dy), response);
+      filter->learn_last(dx, dy);
+    }
+    filter->respond(learned.moved(0, 0), response);
+    const Peak peak = peak_of(response);
+    EXPECT_NEAR(peak.x, 16.0, 0.25) << dx << ',' << dy;
+    EXPECT_NEAR(peak.y, 16.0, 0.25) << dx << ',' << dy;
+    EXPECT_GT(peak.value, 0.7) << dx << ',' << dy;
+  }
+}
+
 TEST(CorrelationFilter, AnswersWhatItLearnedWithThePeakItWasTold) {
   std::mt19937 random(53);
   const World world(random);
