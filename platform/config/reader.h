@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ class Reader {
   template <class Enum, class Names>
   void choice(std::string_view name, Enum& value, const Names& names, std::string_view /*meaning*/) {
     std::vector<std::string_view> words;
+    words.reserve(std::size(names));
     for (const Named<Enum>& named : names) words.push_back(named.name);
     if (const auto chosen = choose(name, words)) value = names[*chosen].value;
   }

@@ -197,6 +197,7 @@ Moment SimulatedHome::moment_at(MonoTime time) {
 void SimulatedHome::take_image(std::uint64_t number, MonoTime stamp, const YuyvBuffer& buffer) {
   const int count = scenario_.spec.camera.blur_moments;
   std::vector<Moment> moments;
+  moments.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) moments.push_back(moment_at(stamp + seconds(sensor_.exposure_s * (i + 0.5) / count)));
   const double luma =
       photographer_->take(moments, sensor_, {static_cast<std::uint32_t>(parameters_.seed), number}, buffer);
