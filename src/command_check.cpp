@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "src/config/load.h"
 #include "src/config/robot_docs.h"
 #include "src/output/text_file.h"
+#include "src/robot/simulation_plugin.h"
 
 namespace cgsr::app {
 namespace {
@@ -26,24 +28,44 @@ struct Options {
   std::string write_config;
 };
 
+/// What the camera will deliver; nothing when that is a problem, which is noted.
+std::optional<hal::CameraMode> camera_mode(const config::Robot& robot, std::vector<std::string>& problems) {
+  if (robot.camera.source == config::CameraSource::kSim) {
+    const auto simulation = robot::load_simulation(robot.sim);
+    if (!simulation) {
+      problems.push_back(simulation.error().message);
+      return std::nullopt;
+    }
+    for (const std::string& note : (*simulation)->notes()) fmt::print("home      {}\n", note);
+    const auto mode = (*simulation)->take_camera()->start();
+    if (mode) return *mode;
+    problems.push_back(mode.error().message);
+    return std::nullopt;
+  }
+  if (robot.camera.replay.path.empty()) {
+    problems.emplace_back("camera.replay.path is empty and no --input is given: no images");
+    return std::nullopt;
+  }
+  auto parameters = robot.camera.replay;
+  parameters.pace = hal::ReplayPace::kAsFastAsPossible;
+  hal::ReplayCamera camera(parameters);
+  const auto mode = camera.start();
+  if (mode) return *mode;
+  problems.push_back(mode.error().message);
+  return std::nullopt;
+}
+
 /// Looks at everything that a run would need, each as far as it can be looked at without moving anything.
 std::vector<std::string> problems_of(const config::Robot& robot) {
   std::vector<std::string> problems;
   Duration period = seconds(1.0 / 30.0);
-  if (robot.camera.replay.path.empty()) {
-    problems.emplace_back("camera.replay.path is empty and no --input is given: no images");
-  } else {
-    auto parameters = robot.camera.replay;
-    parameters.pace = hal::ReplayPace::kAsFastAsPossible;
-    hal::ReplayCamera camera(parameters);
-    if (auto mode = camera.start()) {
-      period = mode->frame_period;
-      fmt::print("camera    {}x{} at {:.2f} Hz\n", mode->width_px, mode->height_px, 1.0 / to_seconds(period));
-    } else {
-      problems.push_back(mode.error().message);
-    }
+  if (const auto mode = camera_mode(robot, problems)) {
+    period = mode->frame_period;
+    fmt::print("camera    {}x{} at {:.2f} Hz\n", mode->width_px, mode->height_px, 1.0 / to_seconds(period));
   }
-  if (robot.run.model.empty()) {
+  if (robot.run.model.empty() && !robot.run.learn.empty()) {
+    fmt::print("object    learned from the first image\n");
+  } else if (robot.run.model.empty()) {
     problems.emplace_back("run.model is empty and no --model is given: nothing to follow");
   } else if (auto model = color::load_model(robot.run.model)) {
     fmt::print("object    {:.0f}x{:.0f} px, {} lights, distinctiveness {:.3f} nat\n", model->width_px, model->height_px,

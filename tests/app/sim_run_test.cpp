@@ -1,5 +1,10 @@
 // The closed loop as a user starts it: the robot's program, the simulator beside it, and what truth says about the run.
+#include <chrono>
 #include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -96,6 +101,24 @@ TEST_F(RunSimulated, APlugInThatIsMissingForeignOrOfAnotherVersionIsNamed) {
   EXPECT_THAT(refusal("/nowhere/sim.so"), HasSubstr("/nowhere/sim.so: cannot open shared object file"));
   EXPECT_THAT(refusal(CGSR_FOREIGN_PLUGIN), HasSubstr("is no simulator of this program"));
   EXPECT_THAT(refusal(CGSR_OLD_PLUGIN), HasSubstr("is a simulator of version 0, this program needs version"));
+}
+
+TEST_F(RunSimulated, CheckLooksAtTheHomeAndSaysWhatIsWrongWithIt) {
+  const auto good = run_cgsr({"check", "--config", small_robot()});
+  EXPECT_EQ(good.exit_code, 0) << good.errors;
+  EXPECT_THAT(good.output, HasSubstr("320x240 at 30.00 Hz"));
+  const auto bad = run_cgsr({"check", "--config", small_robot({{"home-follow.toml", "nowhere.toml"}})});
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.errors, HasSubstr("nowhere.toml"));
+}
+
+// No faster than the clock, however fast the machine; what it computes does not depend on the pace.
+TEST_F(RunSimulated, RealTimeTakesItsTimeAndGivesTheSameBytes) {
+  const auto fast = run(small_robot(), "1.5");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto paced = run(small_robot({{"pace = \"lock_step\"", "pace = \"real_time\""}}), "1.5");
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1350));
+  EXPECT_EQ(paced["outputs_sha256"], fast["outputs_sha256"]);
 }
 
 TEST_F(RunSimulated, LiveThreadsAndASimulatedHomeDoNotGoTogether) {

@@ -16,6 +16,7 @@ std::span<const Experiment> experiments() {
                  light_sweep},
       Experiment{"real-video", "Chapter 3 beside CAM-Shift, KCF and CSRT on real video", true, real_video},
       Experiment{"figure-3.3", "A shirt followed from a corridor into daylight (Figure 3.3)", true, figure_3_3},
+      Experiment{"closed-loop", "The simulated home's robot follows a cart through changing light", true, closed_loop},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };
   return kExperiments;

@@ -1,0 +1,59 @@
+#include "tools/lab/child.h"
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace cgsr::lab {
+namespace {
+
+/// Runs a program to its end; what it prints goes to a file. \return its exit code, or -1.
+int run_logged(std::vector<std::string> words, const std::filesystem::path& log) {
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+  pid_t child = -1;
+  const int error = posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  if (error != 0 || waitpid(child, &status, 0) != child) return -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+std::filesystem::path scratch_json() {
+  return std::filesystem::temp_directory_path() / fmt::format("cgsr-lab-{}.json", getpid());
+}
+
+Result<nlohmann::json> run_for_json(const std::vector<std::string>& words, const std::filesystem::path& json) {
+  const auto log = std::filesystem::path(json).replace_extension("log");
+  const int code = run_logged(words, log);
+  auto result = nlohmann::json::parse(text_of(json), nullptr, false);
+  const std::string printed = text_of(log);
+  std::error_code ignored;
+  std::filesystem::remove(json, ignored);
+  std::filesystem::remove(log, ignored);
+  if (code != 0 || result.is_discarded()) {
+    return fail(fmt::format("{}: ended with exit code {}\n{}", fmt::join(words, " "), code, printed));
+  }
+  return result;
+}
+
+}  // namespace cgsr::lab
