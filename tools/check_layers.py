@@ -44,7 +44,8 @@ FORBIDDEN_IN_CHAPTERS = re.compile(r'^\s*#include\s+[<"](thread|mutex|condition_
 PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", *CHAPTERS]
 # Peers are linked by the lab alone; the simulator's truth is for tests, the lab and the simulator's own tools.
 TRUTH_ROOMS = ["tests", "tools/lab", "tools/sim", "hal/sim"]
-ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": TRUTH_ROOMS, "hal/sim/render/truth_images.h": TRUTH_ROOMS}
+ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": TRUTH_ROOMS, "hal/sim/render/truth_images.h": TRUTH_ROOMS,
+           "hal/simulation.h": ["tests", "hal/sim", "src"]}  # it carries truth for reports: no loop may know it
 INCLUDE = re.compile(r'^\s*#include\s+([<"])([^>"]+)[>"]')
 
 

@@ -121,6 +121,27 @@ TEST_F(RunSimulated, RealTimeTakesItsTimeAndGivesTheSameBytes) {
   EXPECT_EQ(paced["outputs_sha256"], fast["outputs_sha256"]);
 }
 
+// Trouble on the bus, at the base and at the camera reaches the robot as it would reach a real one.
+TEST_F(RunSimulated, TroubleByScriptStopsTheRobotAndIsNamed) {
+  const auto scenario = read_text(CGSR_SOURCE_DIR "/config/scenarios/home-follow.toml");
+  const auto robot_with = [&](const std::string& trouble) {
+    auto text = scenario + "\n" + trouble + "from_s = 3.0\n";
+    replace(text, "\"../worlds", "\"" CGSR_SOURCE_DIR "/config/worlds");
+    write_text(scratch_ / "scenario.toml", text);
+    return small_robot({{CGSR_SOURCE_DIR "/config/scenarios/home-follow.toml", scratch_ / "scenario.toml"}});
+  };
+  for (const auto& [trouble, latched] : {std::pair("[[base_event]]\nwhat = \"emergency_stop\"\n", "refuses motion"),
+                                         std::pair("[[bus_event]]\nwhat = \"bus_off\"\n", "does not take commands"),
+                                         std::pair("[[bus_event]]\nwhat = \"base_silent\"\n", "odometry")}) {
+    const auto motion = run(robot_with(trouble), "3.6")["motion"];
+    EXPECT_GT(motion["beats_in_motion"], 50) << trouble;
+    EXPECT_THAT(motion["latched"].get<std::string>(), HasSubstr(latched)) << trouble;
+  }
+  const auto gone = run_cgsr({"run", "--config", robot_with("[[camera_event]]\nwhat = \"gone\"\n")});
+  EXPECT_EQ(gone.exit_code, 1);
+  EXPECT_THAT(gone.errors, HasSubstr("error: camera: the simulated camera is gone"));
+}
+
 TEST_F(RunSimulated, LiveThreadsAndASimulatedHomeDoNotGoTogether) {
   const auto outcome = run_cgsr({"run", "--config", small_robot({{"\"lock_step\"", "\"live\""}})});
   EXPECT_EQ(outcome.exit_code, 1);

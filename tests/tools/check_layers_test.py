@@ -48,6 +48,9 @@ class CheckLayers(unittest.TestCase):
     def test_a_chapter_that_reads_a_configuration(self):
         self.assert_caught({"platform/config/reader.h": "", "pipeline/color/a.h": '#include "platform/config/reader.h"\n'}, "pipeline/color may not include")
 
+    def test_a_loop_that_knows_the_simulation(self):
+        self.assert_caught({"hal/simulation.h": "", "pipeline/vision_loop.h": '#include "hal/simulation.h"\n'}, "src only")
+
     def test_chapters_that_know_each_other(self):
         self.assert_caught({"pipeline/color/b.h": "", "pipeline/localization/a.h": '#include "pipeline/color/b.h"\n'}, "pipeline/localization may not include")
 
