@@ -9,6 +9,11 @@ namespace cgsr::color {
 namespace {
 
 constexpr int kRefinements = 3;
+// What a window of the search, which fits the object only roughly, must have of what is asked after refinement: most windows without the
+// object end here, at a third of the cost.
+constexpr double kGlanceScore = 0.75;
+constexpr double kGlanceSharpness = 0.5;
+constexpr double kGlanceAgreement = 0.65;
 
 }  // namespace
 
@@ -63,26 +68,25 @@ bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const Searc
 /// \return whether one of them is surely the object; else `place` stays as it is.
 bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
                           Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
   LocalAnswer best;
-  Light gain;
-  bool any = false;
+  Tint seen;
   for (int i = 0; i < matches.count && budget.grant(); ++i) {
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
-    const Light its_gain = light_gain(learned_quantiles, channel_quantiles(view_object(pyramid, window)));
-    const LocalAnswer seen = local.look_under(its_gain, pyramid, centred_on(window, box.width, box.height));
-    if (any && seen.score <= best.score) continue;
-    best = seen;
-    gain = its_gain;
-    any = true;
+    const Tint its_tint = tint(window);
+    if (its_tint.agreement < kGlanceAgreement * doubt.found_agreement) continue;
+    const LocalAnswer its_answer = local.look_under(its_tint.gain, pyramid, centred_on(window, box.width, box.height));
+    if (its_answer.score <= best.score) continue;
+    best = its_answer;
+    seen = its_tint;
   }
-  if (!any) return false;
-  Tint seen{gain, 0.0};
+  if (best.score < kGlanceScore * doubt.found_score * first_score) return false;
+  if (best.sharpness < kGlanceSharpness * doubt.found_sharpness) return false;
   for (int round = 0; round < kRefinements && budget.grant(); ++round) {
     best = local.look_under(seen.gain, pyramid, best.box);
     best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.size_limit);
     seen = tint(best.box);
   }
-  const DoubtParameters& doubt = parameters.doubt;
   const double its_divergence = divergence.of(reduced, best.box).divergence;
   if (best.sharpness < doubt.found_sharpness || best.score < doubt.found_score * first_score) return false;
   if (seen.agreement < doubt.found_agreement || its_divergence > parameters.max_divergence) return false;
