@@ -175,14 +175,11 @@ Result<std::unique_ptr<CachedPhotographer>> CachedPhotographer::make(const Scene
 
 CachedPhotographer::CachedPhotographer(std::unique_ptr<Photographer> photographer, const CacheOptions& cache,
                                        std::string scene_key)
-    : photographer_(std::move(photographer)),
-      cache_(cache),
-      keeps_images_(!cache.folder.empty()),
-      scene_key_(std::move(scene_key)) {}
+    : photographer_(std::move(photographer)), cache_(cache), scene_key_(std::move(scene_key)) {}
 
 double CachedPhotographer::take(const std::vector<Moment>& moments, const SensorSettings& settings,
                                 const ImageIdentity& identity, const YuyvBuffer& buffer) {
-  if (!keeps_images_) return photographer_->take(moments, settings, identity, buffer);
+  if (scene_key_.empty()) return photographer_->take(moments, settings, identity, buffer);
   Fingerprint sum;
   sum.text(scene_key_);
   sum.number(moments.size());

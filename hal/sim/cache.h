@@ -80,8 +80,7 @@ class CachedPhotographer {
 
   std::unique_ptr<Photographer> photographer_;
   ImageCache cache_;
-  bool keeps_images_;
-  std::string scene_key_;  // of program, scene, lens and edge samples
+  std::string scene_key_;  // of program, scene, lens and edge samples; empty: nothing is kept
 };
 
 }  // namespace cgsr::sim

@@ -26,7 +26,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(CommandLine, HelpNamesEveryCommand) {
   const auto help = run_cgsr({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "check", "learn", "track", "reproduce"})
+  for (const char* command : {"run", "check", "learn", "track", "reproduce", "sim"})
     EXPECT_THAT(help.output, HasSubstr(command));
 }
 
@@ -36,6 +36,19 @@ TEST(CommandLine, EveryCommandExplainsItself) {
     EXPECT_EQ(help.exit_code, 0) << command;
     EXPECT_THAT(help.output, HasSubstr("--config")) << command;
   }
+}
+
+// Another program answers, as if it were this one.
+TEST(CommandLine, SimHandsOver) {
+  const auto help = run_cgsr({"sim", "--help"});
+  EXPECT_EQ(help.exit_code, 0) << help.errors;
+  EXPECT_THAT(help.output, HasSubstr("render"));
+  const auto info = run_cgsr({"sim", "info", "--world", "planar"});
+  EXPECT_EQ(info.exit_code, 0) << info.errors;
+  EXPECT_THAT(info.output, HasSubstr("planar: a map of 169 surfaces and 456 edges"));
+  const auto refused = run_cgsr({"sim", "info", "--world", "palace"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, HasSubstr("there is no world 'palace'; there are"));
 }
 
 TEST(CommandLine, LearnWritesAModelAndAPicture) {

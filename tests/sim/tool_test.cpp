@@ -63,7 +63,7 @@ class SimTool : public testing::Test {
  protected:
   SimTool() { app::testing::write_text(scratch_ / "room.toml", kRoom); }
 
-  Outcome render(std::vector<std::string> more, const std::string& picture = "out.png") {
+  Outcome render(const std::vector<std::string>& more, const std::string& picture = "out.png") {
     std::vector<std::string> words{"render",  "--world",  scratch_ / "room.toml", "--size",
                                    "160x120", "--output", scratch_ / picture};
     words.insert(words.end(), more.begin(), more.end());
