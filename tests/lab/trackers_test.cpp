@@ -10,11 +10,13 @@
 #include "tools/lab/scenes/scene.h"
 
 namespace cgsr::lab {
-namespace {
 
-void PrintTo(const NamedTracker& tracker, std::ostream* out) {
+/// GoogleTest looks for it beside the type.
+inline void PrintTo(const NamedTracker& tracker, std::ostream* out) {
   *out << tracker.name;
 }
+
+namespace {
 
 class BoxTrackerContract : public testing::TestWithParam<NamedTracker> {
  protected:
