@@ -13,12 +13,12 @@ function(cgsr_kernels)
   set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>")
 endfunction()
 
-# cgsr_test(NAME sources… DEPENDS targets… [LABELS …]): one test program per folder. Each TEST() is a ctest of its own; suites whose
-# name ends in Property, Contract, Stress, Alloc, Fault, Replay or Golden carry that word as a label too.
+# cgsr_test(NAME sources… DEPENDS targets… [LABEL …]): one test program per folder, each TEST() a ctest of its own. LABEL: unit (default), sim,
+# app, or slow, which only tools/test --long runs.
 function(cgsr_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "DEPENDS;LABELS" ${ARGN})
-  if(NOT ARG_LABELS)
-    set(ARG_LABELS unit)
+  cmake_parse_arguments(ARG "" "TIMEOUT;LABEL" "DEPENDS" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
@@ -26,6 +26,6 @@ function(cgsr_test name)
   add_executable(test_${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}: DISCOVERY_MODE PRE_TEST
-                       PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
+                       PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
 endfunction()
 include(GoogleTest)
