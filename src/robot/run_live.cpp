@@ -147,7 +147,7 @@ Result<void> Robot::run_live(StopRequest& stop) {
     silence_told = !silent.empty();
   }
   service::notify_stopping();
-  const Result<void> outcome = camera_outcome();
+  Result<void> outcome = camera_outcome();
   camera_->stop();
   threads.stop_and_join();
   housekeeping_->step();
