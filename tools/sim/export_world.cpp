@@ -20,7 +20,7 @@ Result<void> export_world(const World& world, const ExportRequest& request, cons
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail(fmt::format("{}: {}", folder.string(), error.message()));
-  const auto written =
+  auto written =
       write_map(world.scene, folder / "map.obj", fmt::format("The world '{}' as it is", world.scene.name));
   if (!written) return written;
   const CalibrationErrors errors = CalibrationErrors().times(request.error_factor);
