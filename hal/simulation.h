@@ -19,7 +19,7 @@ namespace cgsr::hal {
 
 /// Grows whenever anything in this header or in the interfaces that it names changes: a plug-in of another version is
 /// refused.
-inline constexpr int kSimulationVersion = 1;
+inline constexpr int kSimulationVersion = 2;
 
 /// The section [sim] of a robot's file.
 struct SimulationParameters {
@@ -29,6 +29,7 @@ struct SimulationParameters {
   int threads = 2;
   int width_px = 640;
   int height_px = 480;
+  bool cache = false;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -38,6 +39,8 @@ struct SimulationParameters {
     visit.number("threads", self.threads, {1, 64}, "", "that render; the images do not depend on it");
     visit.number("width_px", self.width_px, {16, 4096}, "px", "of the camera's images, even");
     visit.number("height_px", self.height_px, {16, 4096}, "px", "of the camera's images");
+    visit.flag("cache", self.cache,
+               "keeps rendered images in the user's cache folder: a repeated run does not draw them again");
   }
 };
 

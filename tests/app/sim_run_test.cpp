@@ -30,17 +30,12 @@ class RunSimulated : public ::testing::Test {
   std::string small_robot(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
     auto text = read_text(CGSR_SOURCE_DIR "/config/robots/sim-home.toml");
     const std::vector<std::pair<std::string, std::string>> halves{
-        {"\nfx_px = 601.8", "\nfx_px = 300.9"},
-        {"\nfy_px = 579.4", "\nfy_px = 289.7"},
-        {"\ncx_px = 319.5", "\ncx_px = 159.5"},
-        {"\ncy_px = 239.5", "\ncy_px = 119.5"},
-        {"\nx_px = 236", "\nx_px = 118"},
-        {"\ny_px = 250", "\ny_px = 125"},
-        {"\nwidth_px = 67", "\nwidth_px = 33"},
-        {"\nheight_px = 128", "\nheight_px = 64"},
-        {"\nwidth_px = 640", "\nwidth_px = 320"},
-        {"\nheight_px = 480", "\nheight_px = 240"},
-        {"\"../scenarios", "\"" CGSR_SOURCE_DIR "/config/scenarios"}};
+        {"\nfx_px = 601.8", "\nfx_px = 300.9"},   {"\nfy_px = 579.4", "\nfy_px = 289.7"},
+        {"\ncx_px = 319.5", "\ncx_px = 159.5"},   {"\ncy_px = 239.5", "\ncy_px = 119.5"},
+        {"\nx_px = 236", "\nx_px = 118"},         {"\ny_px = 250", "\ny_px = 125"},
+        {"\nwidth_px = 67", "\nwidth_px = 33"},   {"\nheight_px = 128", "\nheight_px = 64"},
+        {"\nwidth_px = 640", "\nwidth_px = 320"}, {"\nheight_px = 480", "\nheight_px = 240"},
+        {"\ncache = true", "\ncache = false"},    {"\"../scenarios", "\"" CGSR_SOURCE_DIR "/config/scenarios"}};
     for (const auto& [from, to] : halves) replace(text, from, to);
     for (const auto& [from, to] : changes) replace(text, from, to);
     const std::string file = scratch_ / ("robot" + std::to_string(++robots_) + ".toml");
@@ -81,6 +76,23 @@ TEST_F(RunSimulated, TheSameBytesOnOneThreadAndOnTwoAndOthersForAnotherSeed) {
   EXPECT_EQ(one["outputs_sha256"], two["outputs_sha256"]);
   EXPECT_EQ(one["truth"], two["truth"]);
   EXPECT_NE(run(small_robot(), "3", {"--seed", "2"})["inputs_sha256"], two["inputs_sha256"]);
+}
+
+// Keeping images spares the second run their drawing, and changes nothing else.
+TEST_F(RunSimulated, ARepeatedRunOutOfTheCacheIsTheSame) {
+  const std::string folder = scratch_ / "cache";
+  setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+  const auto drawn = run(small_robot(), "3");
+  EXPECT_FALSE(std::filesystem::exists(folder)) << "kept although nobody asked for it";
+  const auto fresh = run(small_robot({{"\ncache = false", "\ncache = true"}}), "3");
+  const auto images = std::distance(std::filesystem::recursive_directory_iterator(folder), {});
+  const auto repeated = run(small_robot({{"\ncache = false", "\ncache = true"}}), "3");
+  unsetenv("XDG_CACHE_HOME");
+  EXPECT_GT(images, 80);
+  for (const char* const what : {"inputs_sha256", "outputs_sha256", "truth"}) {
+    EXPECT_EQ(fresh[what], drawn[what]) << what;
+    EXPECT_EQ(repeated[what], fresh[what]) << what;
+  }
 }
 
 // The robot's program must start and drive where there is no ray tracer.

@@ -155,7 +155,9 @@ Result<void> SimulatedHome::open_camera() {
   sensor_.noise = spec.noise;
   const double longest_s = spec.automatic_exposure ? AutoExposure{}.longest_exposure_s : 0.0;
   image_delay_ = seconds(std::max(sensor_.exposure_s, longest_s));
-  auto photographer = Photographer::make(world_.scene, camera_, {parameters_.threads, spec.edge_samples});
+  CacheOptions cache;
+  if (parameters_.cache) cache.folder = image_cache_folder();
+  auto photographer = CachedPhotographer::make(world_.scene, camera_, {parameters_.threads, spec.edge_samples}, cache);
   if (!photographer) return tl::unexpected(photographer.error());
   photographer_ = std::move(*photographer);
   plan_ = make_plan(world_.scene);
@@ -226,6 +228,7 @@ void SimulatedHome::remember(MonoTime stamp, MonoTime middle, const Moment& mome
     truth.object_mps = velocity.norm();
     truth.distance_m = away.norm();
     truth.nearing_mps = truth.distance_m > 0.0 ? -velocity.dot(away) / truth.distance_m : 0.0;
+    photographer_->renderer().move_to(moment.state);  // an image out of the cache moved nothing
     const FigureView view = figure_view(photographer_->renderer(), moment.state, moment.X_WC, object_, object_parts_);
     truth.in_view = truth.there && view.in_view;
     truth.box = view.visible;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "hal/sim/base/virtual_segway.h"
+#include "hal/sim/cache.h"
 #include "hal/sim/home/scenario.h"
-#include "hal/sim/render/photographer.h"
 #include "hal/sim/switches/simulated_switches.h"
 #include "hal/sim/worlds/world.h"
 #include "hal/simulation.h"
@@ -65,7 +65,7 @@ class SimulatedHome final : public hal::Simulation {
   SensorSettings sensor_;
   Duration image_delay_{};
   std::atomic<MonoTime> now_{MonoTime{}};
-  std::unique_ptr<Photographer> photographer_;
+  std::unique_ptr<CachedPhotographer> photographer_;
   hal::Plan plan_;
   mutable std::mutex truth_mutex_;
   std::deque<hal::ImageTruth> truths_;
