@@ -20,8 +20,7 @@ Result<void> export_world(const World& world, const ExportRequest& request, cons
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return fail(fmt::format("{}: {}", folder.string(), error.message()));
-  auto written =
-      write_map(world.scene, folder / "map.obj", fmt::format("The world '{}' as it is", world.scene.name));
+  auto written = write_map(world.scene, folder / "map.obj", fmt::format("The world '{}' as it is", world.scene.name));
   if (!written) return written;
   const CalibrationErrors errors = CalibrationErrors().times(request.error_factor);
   return write_calibration(calibrated_copy(world.scene, *robot, errors, request.seed), errors, request.seed,
