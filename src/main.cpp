@@ -1,4 +1,5 @@
 #include <exception>
+#include <string>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -24,6 +25,12 @@ int run_command_line(int argc, char** argv) {
   add_reproduce_command(app, exit_code);
   add_sim_command(app, exit_code);
 
+  const std::string first = argc > 1 ? argv[1] : "";
+  const auto named = [&first](const CLI::App* command) { return command->check_name(first); };
+  if (!first.empty() && first.front() != '-' && app.get_subcommands(named).empty()) {
+    report(Error{fmt::format("there is no command '{}'; cgsr --help names them", first)});
+    return kUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {

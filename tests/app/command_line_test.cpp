@@ -30,6 +30,12 @@ TEST(CommandLine, HelpNamesEveryCommand) {
     EXPECT_THAT(help.output, HasSubstr(command));
 }
 
+TEST(CommandLine, ACommandThatThereIsNotIsNamed) {
+  const auto slip = run_cgsr({"trak", "--input", "somewhere"});
+  EXPECT_NE(slip.exit_code, 0);
+  EXPECT_THAT(slip.errors, HasSubstr("there is no command 'trak'"));
+}
+
 TEST(CommandLine, EveryCommandExplainsItself) {
   for (const char* command : {"run", "check", "learn", "track"}) {
     const auto help = run_cgsr({command, "--help"});
