@@ -194,6 +194,7 @@ hal::Twist MotionLoop::towards_goal(MonoTime now, MotionStatus& status) const {
   hal::Twist next;
   next.forward_mps = behavior::ramp(commanded_.forward_mps, goal.forward_mps, parameters_.acceleration_limit_mps2,
                                     parameters_.deceleration_limit_mps2, elapsed_s);
+  if (goal_->halt && goal.forward_mps == 0.0) next.forward_mps = 0.0;
   next.left_radps = behavior::ramp(commanded_.left_radps, goal.left_radps, parameters_.turn_acceleration_limit_radps2,
                                    parameters_.turn_acceleration_limit_radps2, elapsed_s);
 

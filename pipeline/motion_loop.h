@@ -18,8 +18,8 @@ inline constexpr Duration kMotionPeriod = seconds(0.010);
 /// Owns the base and tells it, 100 times a second, how to move: the goal within the limits, or zero.
 ///
 /// It starts disarmed. Arming is refused, with the cause, while anything stops the robot or the loop was late within the
-/// last second; where the base has a FaultLatch, arming re-arms it too. A stop is zero at once, without a ramp; a slower
-/// goal is approached with the deceleration limit, unless the keep-in area needs more. After a latching cause the robot
+/// last second; where the base has a FaultLatch, arming re-arms it too. A stop is zero at once, without a ramp, and so is
+/// a goal that halts; a slower goal is approached with the deceleration limit, unless the keep-in area needs more. After a latching cause the robot
 /// is disarmed; after a holding one it starts again from zero with the acceleration limit. Rows and times: docs/faults.md.
 ///
 /// A dry run computes and reports all this, and calls neither the base's command() nor its rearm().

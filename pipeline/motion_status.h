@@ -38,6 +38,7 @@ bool latches(StopCause cause);
 struct Goal {
   hal::Twist twist;
   MonoTime stamp{};
+  bool halt = false;  ///< what was followed is gone: forward motion ends at once, without the deceleration limit.
 };
 
 enum class ArmRequest : std::uint8_t { kNone, kArm, kDisarm };

@@ -98,7 +98,9 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
   } else {
     decision.state = state_when_unseen(elapsed);
     decision.bearing_rad = last_bearing_rad_;
+    decision.halt = true;
   }
+  if (decision.halt) goal_.forward_mps = 0.0;
 
   const Velocity target = wanted(decision);
   // A long gap between images must not become a jump of speed.

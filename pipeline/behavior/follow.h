@@ -54,6 +54,7 @@ struct FollowDecision {
   double bearing_rad =
       0.0;  ///< of the box's centre, positive to the left; of the last one seen when it is not seen now.
   double distance_m = 0.0;  ///< estimated; 0 when unknown.
+  bool halt = false;        ///< the object is not seen: the forward goal is zero without a ramp.
 };
 
 /// Keeps an object centred and at a distance.

@@ -11,8 +11,8 @@ bool VisionTask::step() {
   runner_.begin_frame({image->stamp(), image->sequence(), true});
   const Decision decision = loop_.on_image(*image);
   // A goal that finds no room is lost: the newest one is what counts, and without any the dead-man stops the robot.
-  static_cast<void>(
-      links_.goals.push(Goal{{decision.follow.goal.forward_mps, decision.follow.goal.left_radps}, image->stamp()}));
+  static_cast<void>(links_.goals.push(
+      Goal{{decision.follow.goal.forward_mps, decision.follow.goal.left_radps}, image->stamp(), decision.follow.halt}));
   in_time_.dealt_with(image->sequence(), started, clock_.now());
   links_.images_in_time.store(in_time_.enough(), std::memory_order_relaxed);
   report(decision, std::move(*image));

@@ -124,9 +124,10 @@ TEST(Follow, LostItStandsThenSearchesThenGivesUp) {
   Follow follow(stated_size(), kAtTwoMetres);
   repeat(follow, seen(kCentre_px + 100.0, 30.0, 60.0), 120);
 
-  const auto braking = follow.decide(nothing(), kImagePeriod);
-  EXPECT_EQ(braking.state, FollowState::kStanding);
-  EXPECT_GT(braking.goal.forward_mps, 0.0) << "by the ramp, not at once";
+  const auto halted = follow.decide(nothing(), kImagePeriod);
+  EXPECT_EQ(halted.state, FollowState::kStanding);
+  EXPECT_TRUE(halted.halt);
+  EXPECT_EQ(halted.goal.forward_mps, 0.0) << "at once: nobody knows what it would drive towards";
   const auto standing = repeat(follow, nothing(), 28);  // 0.97 s
   EXPECT_EQ(standing.state, FollowState::kStanding);
   EXPECT_EQ(standing.reason, FollowReason::kNotFound);

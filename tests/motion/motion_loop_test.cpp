@@ -47,6 +47,18 @@ TEST(MotionLoop, SlowerGoalIsApproachedByTheDecelerationLimit) {
   EXPECT_EQ(rig.steps(100).commanded.forward_mps, 0.0);
 }
 
+TEST(MotionLoop, WhoeverLostWhatItFollowsHaltsWithoutTheRamp) {
+  Rig rig;
+  rig.arm_and_move({0.3, 0.0});
+  rig.goal = {0.0, 0.4};
+  rig.halt = true;
+  const auto status = rig.step();
+  EXPECT_EQ(status.commanded.forward_mps, 0.0);
+  EXPECT_TRUE(status.armed) << "it may go on when it has found it again";
+  rig.goal = {0.3, 0.0};
+  EXPECT_LE(rig.step().commanded.forward_mps, 0.4 * 0.01 + 1e-12) << "a halt is of a goal that stands";
+}
+
 TEST(MotionLoop, DisarmIsZeroAtOnce) {
   Rig rig;
   rig.arm_and_move({0.3, 0.3});

@@ -29,7 +29,7 @@ struct Rig {
   MotionStatus step(Duration since_last = kMotionPeriod) {
     now += since_last;
     inputs.goal.reset();
-    if (goals_come) inputs.goal = Goal{goal, now - seconds(0.033)};
+    if (goals_come) inputs.goal = Goal{goal, now - seconds(0.033), halt};
     const MotionStatus status = loop.step(now, inputs);
     inputs.request = ArmRequest::kNone;
     return status;
@@ -63,6 +63,7 @@ struct Rig {
   MotionInputs inputs;
   hal::Twist goal;
   bool goals_come = true;
+  bool halt = false;
 };
 
 }  // namespace cgsr

@@ -18,12 +18,12 @@ inline constexpr std::array kBaseModeNames = {Named<BaseMode>{"disabled", BaseMo
 /// drives.
 struct BaseParameters {
   BaseMode mode = BaseMode::kBalance;
-  double acceleration_limit_mps2 = 1.5;
+  double acceleration_limit_mps2 = 3.0;
   double velocity_lag_s = 0.05;
   double turn_acceleration_limit_radps2 = 6.0;
   double turn_lag_s = 0.08;
   double turn_knee_mps = 1.57;
-  double balance_rate_radps = 8.0;
+  double balance_rate_radps = 14.0;
   double balance_damping = 0.8;
   double pendulum_length_m = 0.12;
   double axle_height_m = 0.24;

@@ -95,8 +95,8 @@ Result<Report> closed_loop(const Setting& setting) {
       "Not in the dissertation. Every figure comes from the simulator's truth, none from what the robot believes.",
       "A seed draws noise, wheel slip and how far the cart goes astray; lamps and switches keep to the scenario.",
       "Commands are seen once per image, so times are whole images; standing is below 0.05 m/s over the ground. "
-      "A base that balances leans back before it brakes: at 0.42 m/s the simulated one takes 0.55 s from the first "
-      "slower command to standing, however it is commanded."};
+      "A base that balances leans back before it brakes; how long that takes is the simulated base's own "
+      "(hal/sim/base)."};
   return report;
 }
 
