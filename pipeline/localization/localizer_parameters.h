@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+
+#include "platform/parameters.h"
+
+namespace cgsr::localization {
+
+enum class Method : std::uint8_t {
+  kGlCorrect,  ///< visible edges only, Gaussian prior, gate, several starts where the prior is wide.
+  kStronger,   ///< Alg. 4.1: every edge projected, no occlusion, no gate, one start.
+  kPaper,  ///< 4.2's expectation with the dissertation's solver: lambda = 1, units proportional to the variance, full step, no gate.
+};
+
+inline constexpr Named<Method> kMethodNames[] = {
+    {"glcorrect", Method::kGlCorrect}, {"stronger", Method::kStronger}, {"paper", Method::kPaper}};
+
+/// How a camera's pose is corrected. Pixels are those of the grey image worked on: 320x240 for a 640x480 camera.
+struct LocalizerParameters {
+  Method method = Method::kGlCorrect;
+  bool search = true;
+  bool gate = true;
+  int iterations = 6;
+  double settled_px = 0.1;
+  double look_again_px = 6.0;
+  double system_sigma_px = 0.9;
+  double map_sigma_m = 0.005;
+  double match_angle_deg = 12.0;
+  double match_radius_px = 24.0;
+  double match_radius_least_px = 4.0;
+  double track_px = 7.0;
+  double start_spacing_px = 12.0;
+  double starts_per_cell = 16.0;
+  int starts_most = 500;
+  int starts_per_image = 8;
+  int finalists = 8;
+  int neighbours = 40;
+  int walks = 4;
+  int matches_least = 4;
+  double explained_least = 0.45;
+  double lead_least = 0.02;
+  double evidence_least = 0.65;
+  double prior_chi2_most = 20.0;
+  double sigma_most_m = 0.10;
+  double sigma_most_deg = 3.0;
+  double rms_most_px = 1.35;
+  int pieces_most = 1200;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("method", self.method, kMethodNames, "how a pose is corrected");
+    visit.flag("search", self.search, "several starts where the prior is wide; off: from the prior alone");
+    visit.flag("gate", self.gate, "a pose is corrected only where the evidence is enough");
+    visit.number("iterations", self.iterations, {1, 50}, "", "expectation and maximisation alternate at most so often");
+    visit.number("settled_px", self.settled_px, {0.001, 10.0}, "px", "a step that moves the image less ends them");
+    visit.number("look_again_px", self.look_again_px, {0.0, 100.0}, "px",
+                 "a pose that moved the image further looks again at what is visible");
+    visit.number("system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
+                 "error of camera and map in the image, beside the segment's own");
+    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's place, in every covariance");
+    visit.number("match_angle_deg", self.match_angle_deg, {1.0, 45.0}, "deg", "largest difference of direction");
+    visit.number("match_radius_px", self.match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
+    visit.number("match_radius_least_px", self.match_radius_least_px, {1.0, 50.0}, "px",
+                 "what it shrinks to as the pose settles");
+    visit.number("track_px", self.track_px, {0.0, 200.0}, "px",
+                 "a prior whose sigma moves the image less is followed from one start");
+    visit.number("start_spacing_px", self.start_spacing_px, {2.0, 100.0}, "px",
+                 "motion of the image that makes a cell of the prior");
+    visit.number("starts_per_cell", self.starts_per_cell, {1.0, 100.0}, "", "of the prior");
+    visit.number("starts_most", self.starts_most, {1, 2000}, "", "however wide the prior is");
+    visit.number("starts_per_image", self.starts_per_image, {0, 2000}, "", "0: as many as the budget grants");
+    visit.number("finalists", self.finalists, {1, 64}, "", "starts that are refined");
+    visit.number("neighbours", self.neighbours, {0, 500}, "", "poses about the best one that are tried against it");
+    visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
+    visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate");
+    visit.number("explained_least", self.explained_least, {0.0, 1.0}, "", "gate: share of the expected length found");
+    visit.number("lead_least", self.lead_least, {0.0, 1.0}, "", "gate: ahead of the second-best pose");
+    visit.number("evidence_least", self.evidence_least, {-10.0, 2.0}, "", "gate: explained, lead and prior together");
+    visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
+    visit.number("sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m", "gate: of the position's worst direction");
+    visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "gate: of the worst axis of turning");
+    visit.number("rms_most_px", self.rms_most_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
+    visit.number("pieces_most", self.pieces_most, {16, 20000}, "",
+                 "visible pieces of edges worked with, nearest and longest first");
+  }
+};
+
+}  // namespace cgsr::localization

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+
+#include "pipeline/localization/localizer.h"
+#include "platform/parameters.h"
+
+namespace cgsr::localization {
+
+struct PoseTrackerParameters {
+  double slip = 0.05;
+  double slip_turn = 0.05;
+  double drift_m = 0.002;
+  double drift_deg = 0.1;
+  double tilt_deg = 0.5;
+  double height_m = 0.01;
+  bool floor = true;
+  int lost_after = 15;
+  double widen = 1.25;
+  double wide_m = 0.5;
+  double wide_deg = 12.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("slip", self.slip, {0.0, 1.0}, "", "sigma of a step of the odometry, relative to its length");
+    visit.number("slip_turn", self.slip_turn, {0.0, 1.0}, "", "sigma of its turn, relative");
+    visit.number("drift_m", self.drift_m, {0.0, 0.2}, "m", "sigma of the position that every image adds");
+    visit.number("drift_deg", self.drift_deg, {0.0, 10.0}, "deg", "sigma of the direction that every image adds");
+    visit.number("tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg", "on a floor: sigma of roll and pitch");
+    visit.number("height_m", self.height_m, {0.0005, 1.0}, "m", "on a floor: sigma of the camera's height");
+    visit.flag("floor", self.floor, "height, roll and pitch are those of a robot on a level floor");
+    visit.number("lost_after", self.lost_after, {1, 1000}, "",
+                 "images without a correction after which the pose is lost");
+    visit.number("widen", self.widen, {1.0, 10.0}, "", "growth of the belief with each search that fails when lost");
+    visit.number("wide_m", self.wide_m, {0.05, 10.0}, "m", "the belief's position never grows beyond this sigma");
+    visit.number("wide_deg", self.wide_deg, {1.0, 90.0}, "deg", "nor its heading beyond this");
+  }
+};
+
+enum class TrackState : std::uint8_t {
+  kUnsure,     ///< begun, no image has confirmed the pose yet.
+  kTracking,   ///< the last images corrected the pose.
+  kLost,       ///< too long without a correction: the belief widens and the search goes on.
+  kRecovered,  ///< this image ended a loss; the next one says kTracking.
+};
+
+/// \return lower_case word.
+std::string_view name_of(TrackState state);
+
+struct TrackedPose {
+  TrackState state = TrackState::kUnsure;
+  geometry::Pose X_WC = geometry::Pose::Identity();
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  Correction correction;  ///< of this image: what happened and why.
+  int images_since_correction = 0;
+};
+
+/// The pose of a camera on a robot over time: odometry carries it from image to image, images correct it.
+///
+/// Allocates nothing after construction. Threads: one caller at a time.
+class PoseTracker {
+ public:
+  /// \param localizer  outlives it.  \param X_RC  the camera's mount.
+  PoseTracker(Localizer& localizer, const geometry::Pose& X_RC, const PoseTrackerParameters& parameters);
+
+  /// Begins at a pose: of the robot's configuration, the last run's file or a marker.
+  void start(const Prior& prior);
+
+  /// The robot moved by X_R0R1 since the last call, as its odometry says, aligned to the coming image's exposure.
+  void moved(const geometry::Pose& X_R0R1);
+
+  /// Looks at an image. Never damages the pose: what the gate refuses leaves the prediction.
+  const TrackedPose& see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask = nullptr);
+
+  [[nodiscard]] const TrackedPose& now() const { return now_; }
+
+ private:
+  void widen();
+
+  Localizer* localizer_;
+  geometry::Pose X_RC_;
+  PoseTrackerParameters parameters_;
+  TrackedPose now_;
+};
+
+}  // namespace cgsr::localization
