@@ -1,8 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,18 +37,24 @@ enum class EdgeKind : std::uint8_t {
   kCrease,    ///< two surfaces meet at an angle.
   kBorder,    ///< one surface ends.
   kMaterial,  ///< two coplanar surfaces of different materials meet.
-  kDrawn,     ///< a line of the file's own (ViSP's .cao).
+  kDrawn,     ///< a line of the file's own (ViSP's .cao); no surfaces.
 };
 
 /// A straight line of the map, once; its index in Map::edges is its id.
 ///
-/// Looked at with vertices[0] below and vertices[1] above and surface[0]'s front facing the viewer, surface[0] lies to the left. kNone: nothing of the map is there.
+/// Looked at with vertices[0] below and vertices[1] above and surfaces[0]'s front facing the viewer, surfaces[0] lies to the left and
+/// surfaces[1] to the right; who looks at surfaces[0]'s back sees them swapped. kNone: nothing of the map is there.
 struct Edge {
   std::array<std::uint32_t, 2> vertices{};
   std::array<std::uint32_t, 2> surfaces{kNone, kNone};
+  /// What is seen beside the edge, left and right as above: the adjacent surface itself, or the one that covers it or that it lies on (within
+  /// LoadOptions::lies_on_m): a poster's border has {poster, wall}, a box's foot {side, floor}, though the mesh says {side, bottom}.
+  /// kNone: whatever is behind.
+  std::array<std::uint32_t, 2> sides{kNone, kNone};
   EdgeKind kind = EdgeKind::kCrease;
-  float contrast =
-      0.0F;  ///< |difference of luma| expected between its two sides, 0..1; a border's: against the surface that it lies on or 0.25 when there is none.
+  /// |difference of luma| expected between its two sides, 0..1: that of their colours and, where they differ in direction, of their shading.
+  /// 0.25 where a side or its colour is not known.
+  float contrast = 0.0F;
 };
 
 /// The static geometry that the robot knows, in W, metres, z up. Plain arrays: made once by the loader, never changed after.
@@ -58,5 +65,20 @@ struct Map {
   std::vector<Edge> edges;
   std::vector<Material> materials;
 };
+
+/// \return the luma of a colour as it is encoded (BT.601), 0..1.
+inline float luma_of(const Eigen::Vector3f& color) {
+  return 0.299F * color.x() + 0.587F * color.y() + 0.114F * color.z();
+}
+
+/// \return the luma that the map expects beside an edge (side 0: left, 1: right, as Edge::sides); nothing where it does not know. Light is
+///         not part of it: only between sides of one plane is the darker one sure to look darker.
+inline std::optional<float> side_luma(const Map& map, const Edge& edge, int side) {
+  const std::uint32_t surface = edge.sides[static_cast<std::size_t>(side)];
+  if (surface == kNone) return std::nullopt;
+  const Material& material = map.materials[map.surfaces[surface].material];
+  if (!material.known_color) return std::nullopt;
+  return luma_of(material.color);
+}
 
 }  // namespace cgsr::world
