@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/LU>
+
 namespace cgsr::geometry {
 
 Eigen::Vector2d Camera::distorted(const Eigen::Vector2d& ideal) const {

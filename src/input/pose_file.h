@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/geometry/pose.h"
+#include "platform/error.h"
+
+namespace cgsr::app {
+
+/// A row of a pose or priors file.
+struct PoseRow {
+  std::optional<std::int64_t> frame;  ///< number of the image that it belongs to; nothing: the file has no such column.
+  geometry::Pose X = geometry::Pose::Identity();
+  int line = 0;  ///< in the file, from 1.
+};
+
+/// Reads poses from CSV with the columns `[frame,]tx,ty,tz,qw,qx,qy,qz`, named in the first line in any order; further columns are passed
+/// by, so that what `cgsr localize --csv` wrote can be read back. Metres and a unit quaternion. Empty lines and lines that begin with '#'
+/// are passed by.
+///
+/// \return at least one row, frames rising; or the first thing that is wrong, with file, line, value and what was expected.
+Result<std::vector<PoseRow>> read_poses(const std::filesystem::path& file);
+
+/// The same from text; `name` is what messages call it.
+Result<std::vector<PoseRow>> parse_poses(const std::string& text, std::string_view name);
+
+/// \return the only pose of a file.
+Result<geometry::Pose> read_pose(const std::filesystem::path& file);
+
+inline constexpr std::string_view kPoseColumns = "tx,ty,tz,qw,qx,qy,qz";
+
+/// \return the values of kPoseColumns, to a micrometre and to 1e-8 of the quaternion, whose real part is not negative.
+std::string pose_as_csv(const geometry::Pose& X);
+
+}  // namespace cgsr::app
