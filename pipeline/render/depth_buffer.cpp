@@ -1,0 +1,93 @@
+#include "pipeline/render/depth_buffer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <emmintrin.h>
+
+namespace cgsr::render {
+namespace {
+
+/// First integer not below x, for x in [0, limit].
+int first_at_or_after(double x, int limit) {
+  if (!(x > 0.0)) return 0;
+  if (x >= limit) return limit;
+  const int whole = static_cast<int>(x);
+  return whole + (x > whole ? 1 : 0);
+}
+
+}  // namespace
+
+DepthBuffer::DepthBuffer(int width, int height)
+    : width_(width),
+      height_(height),
+      stride_(static_cast<std::size_t>(width + 7) / 4 * 4),
+      w_(stride_ * static_cast<std::size_t>(height)),
+      name_(w_.size(), kNothing) {}
+
+void DepthBuffer::clear() {
+  std::fill(w_.begin(), w_.end(), 0.0F);
+}
+
+void DepthBuffer::draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c,
+                       const DepthPlane& plane, std::uint32_t name) {
+  const Eigen::Vector2f* top = &a;
+  const Eigen::Vector2f* middle = &b;
+  const Eigen::Vector2f* bottom = &c;
+  if (middle->y() < top->y()) std::swap(top, middle);
+  if (bottom->y() < middle->y()) std::swap(middle, bottom);
+  if (middle->y() < top->y()) std::swap(top, middle);
+  const int first = first_at_or_after(top->y(), height_);
+  const int last = first_at_or_after(bottom->y(), height_);
+  if (first >= last) return;
+  // Corners may lie far outside of the raster, where a float's step is a part of a cell.
+  const double height = static_cast<double>(bottom->y()) - top->y();
+  const double long_slope = (static_cast<double>(bottom->x()) - top->x()) / height;
+  const double upper = static_cast<double>(middle->y()) - top->y();
+  const double lower = static_cast<double>(bottom->y()) - middle->y();
+  const double upper_slope = upper > 0.0 ? (static_cast<double>(middle->x()) - top->x()) / upper : 0.0;
+  const double lower_slope = lower > 0.0 ? (static_cast<double>(bottom->x()) - middle->x()) / lower : 0.0;
+  const bool middle_right = middle->x() > top->x() + long_slope * upper;
+  for (int y = first; y < last; ++y) {
+    const double along = top->x() + long_slope * (y - static_cast<double>(top->y()));
+    const double bent = y < middle->y() ? top->x() + upper_slope * (y - static_cast<double>(top->y()))
+                                        : middle->x() + lower_slope * (y - static_cast<double>(middle->y()));
+    const int begin = first_at_or_after(middle_right ? along : bent, width_);
+    const int end = first_at_or_after(middle_right ? bent : along, width_);
+    if (begin < end) fill(y, begin, end, plane, name);
+  }
+}
+
+void DepthBuffer::fill(int y, int first, int last, const DepthPlane& plane, std::uint32_t name) {
+  float* depth = &w_[at(first, y)];
+  std::uint32_t* names = &name_[at(first, y)];
+  const __m128 lanes = _mm_setr_ps(0.0F, 1.0F, 2.0F, 3.0F);
+  const __m128 slope = _mm_set1_ps(plane.du);
+  const __m128 step = _mm_set1_ps(4.0F * plane.du);
+  __m128 w =
+      _mm_add_ps(_mm_set1_ps(plane.at(static_cast<float>(first), static_cast<float>(y))), _mm_mul_ps(lanes, slope));
+  const __m128i mine = _mm_set1_epi32(static_cast<int>(name));
+  int left = last - first;
+  const auto write = [&](__m128 nearer, __m128 there) {
+    const __m128i mask = _mm_castps_si128(nearer);
+    _mm_storeu_ps(depth, _mm_or_ps(_mm_and_ps(nearer, w), _mm_andnot_ps(nearer, there)));
+    auto* const into = reinterpret_cast<__m128i*>(names);
+    const __m128i old = _mm_loadu_si128(into);
+    _mm_storeu_si128(into, _mm_or_si128(_mm_and_si128(mask, mine), _mm_andnot_si128(mask, old)));
+  };
+  for (; left >= 4; left -= 4) {
+    const __m128 there = _mm_loadu_ps(depth);
+    const __m128 nearer = _mm_cmpgt_ps(w, there);
+    if (_mm_movemask_ps(nearer) != 0) write(nearer, there);
+    w = _mm_add_ps(w, step);
+    depth += 4;
+    names += 4;
+  }
+  if (left > 0) {  // rows are longer than the raster is wide: reading and writing back beyond the span is harmless
+    const __m128 there = _mm_loadu_ps(depth);
+    const __m128 inside = _mm_cmplt_ps(lanes, _mm_set1_ps(static_cast<float>(left)));
+    write(_mm_and_ps(inside, _mm_cmpgt_ps(w, there)), there);
+  }
+}
+
+}  // namespace cgsr::render

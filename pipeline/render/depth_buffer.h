@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace cgsr::render {
+
+/// 1/Z of a plane over the raster: linear, w(u, v) = du u + dv v + at_origin, with Z the depth along the camera's axis, metres.
+struct DepthPlane {
+  float du = 0.0F;
+  float dv = 0.0F;
+  float at_origin = 0.0F;
+
+  [[nodiscard]] float at(float u, float v) const { return du * u + dv * v + at_origin; }
+};
+
+/// The nearest triangle in each cell of a raster, by inverse depth: its w = 1/Z [1/m], 0 where nothing is, and its name.
+class DepthBuffer {
+ public:
+  static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;
+
+  DepthBuffer(int width, int height);
+
+  void clear();
+
+  /// Draws a triangle of a plane: cells whose centre it covers and where it is nearer than what is there.
+  ///
+  /// \param corners  cells, anywhere in the plane; either way round.
+  void draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
+            std::uint32_t name);
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] float inverse_depth(int x, int y) const { return w_[at(x, y)]; }
+  [[nodiscard]] std::uint32_t name(int x, int y) const { return name_[at(x, y)]; }  ///< kNothing: nothing is.
+  /// Of four cells: (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+  [[nodiscard]] std::array<std::uint32_t, 4> names(int x, int y) const {
+    const std::uint32_t* const first = &name_[at(x, y)];
+    return {first[0], first[1], first[stride_], first[stride_ + 1]};
+  }
+
+ private:
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
+  }
+  void fill(int y, int first, int last, const DepthPlane& plane, std::uint32_t name);
+
+  int width_;
+  int height_;
+  std::size_t stride_;
+  std::vector<float> w_;
+  std::vector<std::uint32_t> name_;
+};
+
+}  // namespace cgsr::render

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pipeline/render/depth_buffer.h"
+#include "pipeline/render/expectation.h"
+#include "pipeline/render/raster_parameters.h"
+#include "pipeline/render/sphere_groups.h"
+#include "pipeline/render/view.h"
+
+namespace cgsr::render {
+
+/// The budget path of 4.2.2's expectation: surfaces into a small depth buffer that also knows whose each cell is, edges sampled against it, ends
+/// of visible pieces found by halving.
+///
+/// The buffer only says which triangles may hide a sample: those of the four cells around it. Whether one does is then decided with its own
+/// outline and plane, at the sample's own place. So neither the raster's coarseness nor a surface's slope needs a bias: creases, silhouettes and
+/// tape a hair above the floor survive, and what is a little behind does not.
+class DepthRaster : public Expectation {
+ public:
+  /// \param map  outlives it.
+  DepthRaster(const world::Map& map, const RasterParameters& parameters);
+
+  /// Pieces end where the lens of `camera` sees no further, which may be a little outside of the image without lens. A vector without any
+  /// capacity is given one first; otherwise nothing allocates.
+  void look(const geometry::Pose& X_WC, const geometry::Camera& camera, std::vector<VisiblePiece>& pieces) override;
+
+  /// What the last look drew: the map's triangle that is seen in each cell of `view()`.
+  [[nodiscard]] const DepthBuffer& buffer() const { return buffer_; }
+  [[nodiscard]] const View& view() const { return *view_; }
+
+  /// Draws the surfaces alone: buffer() then holds them.
+  void draw(const geometry::Pose& X_WC, const geometry::Camera& camera);
+
+ private:
+  struct Corner {
+    Eigen::Vector3f p;   ///< homogeneous cells: (u Z, v Z, Z).
+    Eigen::Vector2f at;  ///< cells; unset behind the near plane.
+    float w = 0.0F;      ///< 1/Z; 0: behind the near plane.
+    std::uint32_t look = 0;
+  };
+  /// An edge on the raster: places s in [0, 1] along it are places in the image.
+  struct Line {
+    Eigen::Vector2f from;
+    Eigen::Vector2f along;
+    float w0 = 0.0F;
+    float dw = 0.0F;
+    const world::Edge* edge = nullptr;
+  };
+
+  const Corner& corner(std::uint32_t vertex);
+  void place(const geometry::Pose& X_WC, const geometry::Camera& camera);
+  void draw_surfaces();
+  bool set_plane(std::uint32_t surface);
+  void draw_clipped(const std::array<const Corner*, 3>& corners, const DepthPlane& plane, std::uint32_t triangle);
+  void look_at_edge(std::uint32_t edge);
+  [[nodiscard]] bool visible(const Line& line, float s) const;
+  [[nodiscard]] bool covers(std::uint32_t triangle, const Eigen::Vector2f& at) const;
+  [[nodiscard]] float last_visible(const Line& line, float seen, float hidden, float precision) const;
+  void keep_longest(std::size_t capacity);
+
+  const world::Map& map_;
+  RasterParameters parameters_;
+  ViewKeeper views_;
+  const View* view_;
+  SphereGroups surfaces_;
+  SphereGroups edges_;
+  DepthBuffer buffer_;
+  std::vector<Corner> corners_;            ///< [vertex], as of the look that `look` says.
+  std::vector<DepthPlane> planes_;         ///< [surface], likewise.
+  std::vector<std::uint32_t> surface_of_;  ///< [triangle]
+  std::vector<VisiblePiece> found_;
+  std::vector<float> lengths_;
+  Frustum frustum_;
+  Eigen::Matrix3f to_cells_ = Eigen::Matrix3f::Identity();  ///< from W, turned and scaled to homogeneous cells.
+  Eigen::Matrix3f R_CW_ = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f p_WC_ = Eigen::Vector3f::Zero();
+  std::uint32_t look_ = 0;
+};
+
+}  // namespace cgsr::render

@@ -1,0 +1,360 @@
+#include "pipeline/render/depth_raster.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/render/reproject.h"
+#include "tests/render/box_map.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cgsr::render {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Camera;
+using geometry::Pose;
+using world::Map;
+
+std::vector<VisiblePiece> seen(const Map& map, const Pose& X_WC, const Camera& camera = {}) {
+  DepthRaster raster(map, {});
+  std::vector<VisiblePiece> pieces;
+  raster.look(X_WC, camera, pieces);
+  return pieces;
+}
+
+double uniform(std::mt19937& random, double least, double most) {
+  return least + (most - least) * random() / 4294967296.0;
+}
+
+/// Whether a point is hidden by a triangle of the map, exactly; triangles within `slack_m` of the point do not count.
+bool hidden(const Map& map, const Vector3d& p_WC, const Vector3d& p, double slack_m) {
+  const Vector3d ray = p - p_WC;
+  for (const world::Triangle& t : map.triangles) {
+    const Vector3d a = map.vertices[t[0]].cast<double>();
+    const Vector3d e1 = map.vertices[t[1]].cast<double>() - a;
+    const Vector3d e2 = map.vertices[t[2]].cast<double>() - a;
+    const Vector3d h = ray.cross(e2);
+    const double det = e1.dot(h);
+    if (std::abs(det) < 1e-12) continue;
+    const Vector3d s = p_WC - a;
+    const double u = s.dot(h) / det;
+    const Vector3d q = s.cross(e1);
+    const double v = ray.dot(q) / det;
+    const double at = e2.dot(q) / det;
+    if (u >= 0 && v >= 0 && u + v <= 1 && at > 0.0 && (1.0 - at) * ray.norm() > slack_m) return true;
+  }
+  return false;
+}
+
+/// Length in the image of what can be seen of a line from a to b, by dense samples.
+double exact_length_px(const Map& map, const Pose& X_WC, const Camera& camera, const Vector3d& a, const Vector3d& b) {
+  const int steps = std::clamp(static_cast<int>((b - a).norm() * 400.0), 200, 3000);
+  const Pose X_CW = X_WC.inverse();
+  double length_px = 0.0;
+  bool was = false;
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();
+  for (int i = 0; i <= steps; ++i) {
+    const Vector3d p = a + (b - a) * (i / static_cast<double>(steps));
+    const Eigen::Vector2d pixel = camera.pixel_of(X_CW * p).value_or(Eigen::Vector2d(-10.0, -10.0));
+    const bool is = pixel.x() >= -0.5 && pixel.x() <= camera.width_px - 0.5 && pixel.y() >= -0.5 &&
+                    pixel.y() <= camera.height_px - 0.5 && !hidden(map, X_WC.translation(), p, 0.003);
+    if (is && was) length_px += (pixel - before).norm();
+    was = is;
+    before = pixel;
+  }
+  return length_px;
+}
+
+TEST(DepthRaster, ACubeShowsNineOfItsTwelveEdges) {
+  Map map;
+  add_box(map, {-0.5F, -0.5F, 0.0F}, {0.5F, 0.5F, 1.0F});
+  const auto pieces = seen(map, looking_from({3.0, 2.0, 2.0}, {0.0, 0.0, 0.5}));
+  ASSERT_EQ(pieces.size(), 9U);
+  for (const VisiblePiece& piece : pieces) {
+    EXPECT_EQ(piece.from, 0.0F);
+    EXPECT_EQ(piece.to, 1.0F);
+    const auto& edge = map.edges[piece.edge];
+    for (const std::uint32_t v : edge.vertices) {
+      EXPECT_FALSE(map.vertices[v].isApprox(Vector3f(-0.5F, -0.5F, 0.0F))) << "the corner at the back";
+    }
+  }
+}
+
+TEST(DepthRaster, PiecesEndWhereSomethingStandsBefore) {
+  Map map;
+  add_rectangle(map, {4.0F, 2.0F, 1.0F}, {0.0F, -4.0F, 0.0F},
+                {0.0F, 0.0F, 1.0F});  // edge 0: along z = 1, y from 2 to -2
+  add_rectangle(map, {2.0F, 0.25F, 0.0F}, {0.0F, -0.5F, 0.0F}, {0.0F, 0.0F, 1.5F});
+  const auto pieces = seen(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 1.0}));
+  std::vector<VisiblePiece> of_edge;
+  std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(of_edge), [](const auto& p) { return p.edge == 0; });
+  ASSERT_EQ(of_edge.size(), 2U);
+  EXPECT_NEAR(of_edge[0].from, 0.0, 1e-3);
+  EXPECT_NEAR(of_edge[0].to, 0.375, 0.003) << "y = 0.5, half of the post's width seen from the camera on the wall";
+  EXPECT_NEAR(of_edge[1].from, 0.625, 0.003);
+  EXPECT_NEAR(of_edge[1].to, 1.0, 1e-3);
+  const Camera camera;
+  EXPECT_NEAR(of_edge[0].p1.x(), camera.cx_px - camera.fx_px * 0.5 / 4.0, 1.0);
+  EXPECT_NEAR(of_edge[0].p1.y(), camera.cy_px, 0.01);
+}
+
+TEST(DepthRaster, TapeAHairAboveTheFloorIsSeenAndBelowItIsNot) {
+  for (const float height : {0.0F, 0.0005F, -0.05F}) {
+    Map map;
+    add_rectangle(map, {-1.0F, -5.0F, 0.0F}, {12.0F, 0.0F, 0.0F}, {0.0F, 10.0F, 0.0F});
+    add_rectangle(map, {3.0F, -0.5F, height}, {0.05F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F});
+    const auto pieces = seen(map, looking_from({0.0, 0.0, 1.2}, {4.0, 0.0, 0.0}));
+    const auto of_tape = std::count_if(pieces.begin(), pieces.end(),
+                                       [](const auto& p) { return p.edge >= 4 && p.from == 0.0F && p.to == 1.0F; });
+    EXPECT_EQ(of_tape, height < 0.0F ? 0 : 4) << height;
+  }
+}
+
+TEST(DepthRaster, AnEdgeALittleBehindASilhouetteIsHidden) {
+  const Camera camera;
+  for (const double behind_px : {1.2, 2.0, -1.2, -2.0}) {
+    Map map;
+    add_box(map, {2.0F, -1.0F, 0.0F}, {2.5F, 1.0F, 1.0F});  // its upper front edge is at z = 1
+    // Seen from z = 1.2 that silhouette lies 0.2 fy / 2.5 below the horizon (the upper back edge); the far rectangle's border is put beside it.
+    const double below_px = camera.fy_px * 0.2 / 2.5 + behind_px;
+    const auto z = static_cast<float>(1.2 - below_px * 6.0 / camera.fy_px);
+    add_rectangle(map, {6.0F, 1.0F, z}, {0.0F, -2.0F, 0.0F}, {0.0F, 0.0F, 3.0F});
+    const auto pieces = seen(map, looking_from({0.0, 0.0, 1.2}, {5.0, 0.0, 1.2}));
+    const auto found = std::count_if(pieces.begin(), pieces.end(), [](const auto& p) { return p.edge == 12; });
+    EXPECT_EQ(found, behind_px > 0 ? 0 : 1) << behind_px;
+  }
+}
+
+TEST(DepthRaster, WhatPassesBehindTheCameraIsCutAtTheNearPlaneAndAtTheBorders) {
+  Map map;
+  add_rectangle(map, {-5.0F, -0.4F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, 0.8F, 0.0F});
+  const Camera camera;
+  const auto pieces = seen(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.9}), camera);
+  ASSERT_GE(pieces.size(), 2U);
+  for (const VisiblePiece& piece : pieces) {
+    for (const Eigen::Vector2f& p : {piece.p0, piece.p1}) {
+      EXPECT_GE(p.x(), -0.51F);
+      EXPECT_LE(p.x(), 639.51F);
+      EXPECT_GE(p.y(), -0.51F);
+      EXPECT_LE(p.y(), 479.51F);
+    }
+  }
+}
+
+// Ends of pieces and their places on the edge belong together, whatever was cut.
+TEST(DepthRasterProperty, PixelsAreThoseOfThePlacesOnTheEdge) {
+  std::mt19937 random(7);
+  Camera lens;
+  lens.k1 = -0.075;
+  lens.k2 = 0.045;
+  for (int trial = 0; trial < 40; ++trial) {
+    Map map;
+    for (int i = 0; i < 12; ++i) {
+      const Vector3f a(static_cast<float>(uniform(random, -4, 4)), static_cast<float>(uniform(random, -4, 4)), 0.0F);
+      add_box(map, a,
+              a + Vector3f(static_cast<float>(uniform(random, 0.1, 1.5)), 0.4F,
+                           static_cast<float>(uniform(random, 0.1, 2))));
+    }
+    const Pose X_WC = looking_from({uniform(random, -1, 1), uniform(random, -1, 1), 2.3},
+                                   {uniform(random, 2, 4), uniform(random, -4, 4), 0.5});
+    for (const Camera& camera : {Camera(), lens, Camera().scaled_to(320, 240)}) {
+      for (const VisiblePiece& piece : seen(map, X_WC, camera)) {
+        const auto& edge = map.edges[piece.edge];
+        const Vector3d a = map.vertices[edge.vertices[0]].cast<double>();
+        const Vector3d b = map.vertices[edge.vertices[1]].cast<double>();
+        for (const auto& [t, pixel] : {std::pair(piece.from, piece.p0), std::pair(piece.to, piece.p1)}) {
+          const Vector3d p_C = X_WC.inverse() * (a + static_cast<double>(t) * (b - a));
+          const auto expected = camera.without_distortion().pixel_of(p_C);
+          ASSERT_TRUE(expected);
+          EXPECT_LT((*expected - pixel.cast<double>()).norm(), 0.05);
+        }
+      }
+    }
+  }
+}
+
+// Against the definition: an edge's point is visible when no triangle lies between.
+TEST(DepthRasterProperty, EndsOfPiecesAreThoseOfExactVisibility) {
+  std::mt19937 random(11);
+  const Camera camera;
+  int ends = 0;
+  int far_off = 0;
+  int edges = 0;
+  int wrong = 0;
+  for (int trial = 0; trial < 25; ++trial) {
+    Map map;
+    add_rectangle(map, {-6.0F, -6.0F, 0.0F}, {12.0F, 0.0F, 0.0F}, {0.0F, 12.0F, 0.0F});
+    for (int i = 0; i < 15; ++i) {
+      const Vector3f a(static_cast<float>(uniform(random, -5, 5)), static_cast<float>(uniform(random, -5, 5)), 0.0F);
+      add_box(map, a,
+              a + Vector3f(static_cast<float>(uniform(random, 0.05, 1)), static_cast<float>(uniform(random, 0.05, 1)),
+                           static_cast<float>(uniform(random, 0.1, 1))));
+    }
+    const Pose X_WC = looking_from({uniform(random, -5, 5), uniform(random, -5, 5), 1.4},
+                                   {uniform(random, -1, 1), uniform(random, -1, 1), 0.3});
+    const auto pieces = seen(map, X_WC, camera);
+    for (std::uint32_t e = 0; e < map.edges.size(); ++e) {
+      const Vector3d a = map.vertices[map.edges[e].vertices[0]].cast<double>();
+      const Vector3d b = map.vertices[map.edges[e].vertices[1]].cast<double>();
+      const double exact_px = exact_length_px(map, X_WC, camera, a, b);
+      double ours_px = 0.0;
+      int count = 0;
+      for (const VisiblePiece& piece : pieces) {
+        if (piece.edge != e) continue;
+        ours_px += (piece.p1 - piece.p0).norm();
+        ++count;
+      }
+      if (exact_px == 0.0 && ours_px == 0.0) continue;
+      ++edges;
+      wrong += std::abs(exact_px - ours_px) > 6.0 * std::max(count, 1) ? 1 : 0;
+      ends += 2 * std::max(count, 1);
+      far_off += std::abs(exact_px - ours_px) > 3.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(edges, 1000);
+  EXPECT_LE(wrong, edges / 100) << "of " << edges;
+  EXPECT_LE(far_off, edges * 15 / 1000) << "of " << edges;
+}
+
+TEST(DepthRaster, SurroundingsThatTheLensShowsBeyondTheImageAreExpectedToo) {
+  Camera lens;
+  lens.k1 = -0.075;
+  lens.k2 = 0.045;
+  Map map;
+  add_rectangle(map, {4.0F, 3.0F, -3.0F}, {0.0F, -6.0F, 0.0F}, {0.0F, 0.0F, 6.0F});
+  add_rectangle(map, {3.9F, -0.01F, -3.0F}, {0.0F, 0.02F, 0.0F}, {0.0F, 0.0F, 6.0F});
+  const Pose X_WC = looking_from({0.0, 0.0, 0.0}, {4.0, 0.0, 0.0});
+  float lowest = 0.0F;
+  for (const VisiblePiece& piece : seen(map, X_WC, lens)) lowest = std::max({lowest, piece.p0.y(), piece.p1.y()});
+  EXPECT_NEAR(lowest, lens.undistorted({0.0, 479.5}).y(), 3.0) << "the lower corners";
+  EXPECT_GT(lowest, 480.5F);
+}
+
+TEST(DepthRaster, WithoutRoomForAllTheLongestAreKept) {
+  Map map;
+  for (int i = 0; i < 30; ++i) {
+    const auto y = static_cast<float>(i) * 0.1F - 1.5F;
+    add_rectangle(map, {4.0F, y, 0.0F}, {0.0F, 0.05F, 0.0F}, {0.0F, 0.0F, 0.1F + 0.02F * static_cast<float>(i)});
+  }
+  const Pose X_WC = looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.5});
+  const auto all = seen(map, X_WC);
+  DepthRaster raster(map, {});
+  std::vector<VisiblePiece> some;
+  some.reserve(20);
+  raster.look(X_WC, Camera(), some);
+  EXPECT_EQ(some.size(), 20U);
+  EXPECT_EQ(some.capacity(), 20U);
+  EXPECT_TRUE(std::is_sorted(some.begin(), some.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; }));
+  EXPECT_GT(all.size(), 100U);
+  float shortest = 1e9F;
+  for (const auto& p : some) shortest = std::min(shortest, (p.p1 - p.p0).norm());
+  const auto longer =
+      std::count_if(all.begin(), all.end(), [&](const auto& p) { return (p.p1 - p.p0).norm() > shortest * 1.001F; });
+  EXPECT_LE(longer, 19);
+  EXPECT_GE(longer, 15) << "some are equally long";
+}
+
+TEST(DepthRaster, AMapBeyondTheBudgetKeepsTheNearest) {
+  Map map;
+  for (int i = 0; i < 120; ++i) {
+    for (int j = 0; j < 20; ++j) {
+      add_rectangle(map, {2.0F + static_cast<float>(i) * 0.5F, -5.0F + 0.5F * static_cast<float>(j), 0.0F},
+                    {0.2F, 0.0F, 0.0F}, {0.0F, 0.2F, 0.0F});
+    }
+  }
+  RasterParameters parameters;
+  parameters.edges_most = 400;
+  parameters.looked_at_most = 3000;
+  DepthRaster raster(map, parameters);
+  std::vector<VisiblePiece> pieces;
+  raster.look(looking_from({0.0, 0.0, 1.5}, {6.0, 0.0, 0.0}), Camera(), pieces);
+  EXPECT_GT(pieces.size(), 300U);
+  EXPECT_LE(pieces.size(), 400U);
+  for (const auto& p : pieces) EXPECT_LT(map.vertices[map.edges[p.edge].vertices[0]].x(), 20.0F);
+}
+
+TEST(DepthRasterFault, AMapOfNothingShowsNothing) {
+  const Map map;
+  EXPECT_TRUE(seen(map, Pose::Identity()).empty());
+}
+
+TEST(DepthRasterFault, APoseThatIsNotFiniteHarmsNothing) {
+  Map map;
+  add_box(map, {2.0F, -0.5F, 0.0F}, {3.0F, 0.5F, 1.0F});
+  Pose X_WC = looking_from({0.0, 0.0, 1.0}, {3.0, 0.0, 0.5});
+  DepthRaster raster(map, {});
+  std::vector<VisiblePiece> pieces;
+  const Pose good = X_WC;
+  X_WC.translation().x() = std::nan("");
+  raster.look(X_WC, Camera(), pieces);
+  X_WC.translation().x() = 1e300;
+  raster.look(X_WC, Camera(), pieces);
+  raster.look(good, Camera(), pieces);
+  EXPECT_EQ(pieces.size(), seen(map, good).size());
+}
+
+TEST(DepthRasterAlloc, LookingTakesNoMemory) {
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "SKIPPED: a sanitizer brings its own malloc";
+  Map map;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3f a(static_cast<float>(i % 8) + 1.0F, static_cast<float>(i / 8) - 4.0F, 0.0F);
+    add_box(map, a, a + Vector3f(0.3F, 0.3F, 0.5F));
+  }
+  DepthRaster raster(map, {});
+  std::vector<VisiblePiece> pieces;
+  std::vector<VisiblePiece> kept;
+  pieces.reserve(1000);
+  kept.reserve(1000);
+  Camera lens;
+  lens.k1 = -0.07;
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 20; ++i) {
+    const Pose X_WC = looking_from({-1.0, 0.1 * i, 1.5}, {3.0, 0.0, 0.0});
+    raster.look(X_WC, i % 2 == 0 ? Camera() : lens, pieces);
+    reproject(map, X_WC, lens, pieces, kept);
+  }
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_FALSE(pieces.empty());
+}
+
+TEST(Reproject, GivesWhatALookGivesWhenNothingIsHidden) {
+  Map map;
+  for (int i = 0; i < 6; ++i) {
+    add_rectangle(map, {4.0F, static_cast<float>(i) - 3.0F, 0.0F}, {0.0F, 0.7F, 0.0F}, {0.0F, 0.0F, 1.0F});
+  }
+  const Camera camera;
+  const auto known = seen(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.5}));
+  const Pose X_WC = looking_from({0.1, 0.05, 1.02}, {4.0, 0.1, 0.5});
+  const auto truth = seen(map, X_WC);
+  std::vector<VisiblePiece> now;
+  now.reserve(100);
+  reproject(map, X_WC, camera, known, now);
+  ASSERT_GT(now.size(), 10U);
+  for (const VisiblePiece& piece : now) {
+    const auto same = std::find_if(truth.begin(), truth.end(), [&](const auto& p) { return p.edge == piece.edge; });
+    if (same == truth.end() || piece.from != 0.0F || piece.to != 1.0F) continue;
+    EXPECT_LT((same->p0 - piece.p0).norm(), 0.2F);
+    EXPECT_LT((same->p1 - piece.p1).norm(), 0.2F);
+  }
+}
+
+TEST(Reproject, CutsWhatLeavesTheViewAndKeepsToItsRoom) {
+  Map map;
+  add_rectangle(map, {-5.0F, -0.4F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, 0.8F, 0.0F});
+  const std::vector<VisiblePiece> known = {{0, 0.0F, 1.0F, {}, {}}, {2, 0.0F, 1.0F, {}, {}}, {1, 0.0F, 1.0F, {}, {}}};
+  std::vector<VisiblePiece> now;
+  now.reserve(2);
+  reproject(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.9}), Camera(), known, now);
+  ASSERT_EQ(now.size(), 2U);
+  EXPECT_GT(now[0].from, 0.5F);
+  EXPECT_NEAR(std::max(now[0].p0.y(), now[0].p1.y()), 479.5F, 0.1F);
+  EXPECT_TRUE(look_again(Pose::Identity(), looking_from({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), {}));
+  EXPECT_FALSE(look_again(Pose::Identity(), Pose::Identity(), {}));
+}
+
+}  // namespace
+}  // namespace cgsr::render
