@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/world/map.h"
+
+namespace cgsr::world {
+
+/// Fills map.edges from the outlines of map.surfaces: vertices, surfaces and kind; not yet sides and contrast. See clean().
+/// \param lines  that the file draws itself; those that an edge covers anyway are left out.
+void trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map);
+
+}  // namespace cgsr::world
