@@ -65,7 +65,9 @@ void DepthRaster::look(const geometry::Pose& X_WC, const geometry::Camera& camer
   if (pieces.capacity() == 0) pieces.reserve(static_cast<std::size_t>(parameters_.pieces_most));
   draw(X_WC, camera);
   found_.clear();
-  for (const std::uint32_t edge : edges_.select(frustum_)) look_at_edge(edge);
+  // Spheres are told by their radius over their distance.
+  const double least_edge = 0.5 * parameters_.piece_least_px / std::max(camera.fx_px, camera.fy_px);
+  for (const std::uint32_t edge : edges_.select(frustum_, least_edge)) look_at_edge(edge);
   keep_longest(std::min(pieces.capacity(), static_cast<std::size_t>(parameters_.pieces_most)));
   const auto earlier = [](const VisiblePiece& a, const VisiblePiece& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.from < b.from;
@@ -110,7 +112,8 @@ const DepthRaster::Corner& DepthRaster::corner(std::uint32_t vertex) {
 void DepthRaster::draw_surfaces() {
   buffer_.clear();
   int triangles_left = parameters_.triangles_most;
-  for (const std::uint32_t name : surfaces_.select(frustum_)) {
+  const double least_surface = 0.5 * parameters_.surface_least_cells / std::max(view_->fx, view_->fy);
+  for (const std::uint32_t name : surfaces_.select(frustum_, least_surface)) {
     const world::Surface& surface = map_.surfaces[name];
     if (!set_plane(name)) continue;
     const DepthPlane& plane = planes_[name];
@@ -206,7 +209,9 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
   const float w_to = w0 + s1 * (w1 - w0);
   const float t_from = t0 + (t1 - t0) * (s0 * w1 / w_from);
   const float t_to = t0 + (t1 - t0) * (s1 * w1 / w_to);
-  const Line line{from + s0 * along, (s1 - s0) * along, w_from, w_to - w_from, &edge};
+  // An edge may lie behind by the tolerance: a hair nearer, it need not be asked about at each sample.
+  const float nearer = 1.0F / (1.0F - static_cast<float>(parameters_.tolerance));
+  const Line line{from + s0 * along, (s1 - s0) * along, w_from * nearer, (w_to - w_from) * nearer, edge.surfaces};
   const float length = line.along.norm();
   if (length < 1e-3F) return;
 
@@ -261,43 +266,42 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
 }
 
 bool DepthRaster::visible(const Line& line, float s) const {
-  const Eigen::Vector2f at = line.from + s * line.along;
-  const int x = std::clamp(static_cast<int>(at.x()), 0, view_->width - 2);
-  const int y = std::clamp(static_cast<int>(at.y()), 0, view_->height - 2);
-  const auto around = buffer_.names(x, y);
+  const float u = line.from.x() + s * line.along.x();
+  const float v = line.from.y() + s * line.along.y();
   const float w = line.w0 + s * line.dw;
+  const int x = std::clamp(static_cast<int>(u), 0, view_->width - 2);
+  const int y = std::clamp(static_cast<int>(v), 0, view_->height - 2);
+  const auto around = buffer_.names(x, y);
   const auto behind = [&](std::uint32_t triangle) {
     if (triangle == DepthBuffer::kNothing) return false;
     const std::uint32_t surface = surface_of_[triangle];
-    return surface != line.edge->surfaces[0] && surface != line.edge->surfaces[1] &&
-           w < planes_[surface].at(at.x(), at.y()) * (1.0F - static_cast<float>(parameters_.tolerance));
+    return surface != line.own[0] && surface != line.own[1] && w < planes_[surface].at(u, v);
   };
-  if (around[0] == around[1] && around[0] == around[2] && around[0] == around[3]) return !behind(around[0]);
+  if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) return !behind(around[0]);
   int hiding = 0;
   for (const std::uint32_t triangle : around) {
     if (!behind(triangle)) continue;
-    if (covers(triangle, at)) return false;
+    if (covers(triangle, u, v)) return false;
     ++hiding;
   }
   return hiding < 4;
 }
 
 /// Whether the triangle covers a place of the raster, exactly; one that is cut by the near plane is taken to.
-bool DepthRaster::covers(std::uint32_t triangle, const Eigen::Vector2f& at) const {
+bool DepthRaster::covers(std::uint32_t triangle, float u, float v) const {
   const world::Triangle& t = map_.triangles[triangle];
   const Corner& a = corners_[t[0]];
   const Corner& b = corners_[t[1]];
   const Corner& c = corners_[t[2]];
   if (a.w == 0.0F || b.w == 0.0F || c.w == 0.0F) return true;
   const auto side = [&](const Corner& from, const Corner& to) {
-    const Eigen::Vector2f along = to.at - from.at;
-    const Eigen::Vector2f there = at - from.at;
-    return along.x() * there.y() - along.y() * there.x();
+    return (to.at.x() - from.at.x()) * (v - from.at.y()) - (to.at.y() - from.at.y()) * (u - from.at.x());
   };
   const float ab = side(a, b);
   const float bc = side(b, c);
+  if ((ab > 0.0F && bc < 0.0F) || (ab < 0.0F && bc > 0.0F)) return false;
   const float ca = side(c, a);
-  return (ab >= 0.0F && bc >= 0.0F && ca >= 0.0F) || (ab <= 0.0F && bc <= 0.0F && ca <= 0.0F);
+  return ab + bc >= 0.0F ? ca >= 0.0F && ab >= 0.0F && bc >= 0.0F : ca <= 0.0F;
 }
 
 float DepthRaster::last_visible(const Line& line, float seen, float hidden, float precision) const {

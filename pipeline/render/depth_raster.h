@@ -48,7 +48,7 @@ class DepthRaster : public Expectation {
     Eigen::Vector2f along;
     float w0 = 0.0F;
     float dw = 0.0F;
-    const world::Edge* edge = nullptr;
+    std::array<std::uint32_t, 2> own{};  ///< surfaces that cannot hide it.
   };
 
   const Corner& corner(std::uint32_t vertex);
@@ -58,7 +58,7 @@ class DepthRaster : public Expectation {
   void draw_clipped(const std::array<const Corner*, 3>& corners, const DepthPlane& plane, std::uint32_t triangle);
   void look_at_edge(std::uint32_t edge);
   [[nodiscard]] bool visible(const Line& line, float s) const;
-  [[nodiscard]] bool covers(std::uint32_t triangle, const Eigen::Vector2f& at) const;
+  [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
   [[nodiscard]] float last_visible(const Line& line, float seen, float hidden, float precision) const;
   void keep_longest(std::size_t capacity);
 

@@ -9,15 +9,16 @@ struct RasterParameters {
   int width = 320;
   int height = 240;
   double near_m = 0.05;
-  double sample_cells = 3.0;
+  double sample_cells = 4.0;
   double refine_cells = 0.1;
   double tolerance = 0.002;
   double piece_least_px = 2.0;
-  int surfaces_most = 4000;
-  int triangles_most = 20000;
-  int edges_most = 5000;
-  int looked_at_most = 20000;
-  int pieces_most = 5000;
+  double surface_least_cells = 1.0;
+  int surfaces_most = 2000;
+  int triangles_most = 10000;
+  int edges_most = 2500;
+  int looked_at_most = 8192;
+  int pieces_most = 3000;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -28,6 +29,8 @@ struct RasterParameters {
     visit.number("refine_cells", self.refine_cells, {0.01, 5.0}, "", "how sharply ends of visible pieces are found");
     visit.number("tolerance", self.tolerance, {0.0, 0.1}, "", "relative depth by which an edge may lie behind");
     visit.number("piece_least_px", self.piece_least_px, {0.0, 100.0}, "px", "shorter pieces are left out");
+    visit.number("surface_least_cells", self.surface_least_cells, {0.0, 50.0}, "",
+                 "surfaces that look smaller than this from end to end hide nothing");
     visit.number("surfaces_most", self.surfaces_most, {1, 10000000}, "", "drawn, nearest and largest first");
     visit.number("triangles_most", self.triangles_most, {1, 10000000}, "", "drawn at most");
     visit.number("edges_most", self.edges_most, {1, 10000000}, "", "looked at, nearest and longest first");

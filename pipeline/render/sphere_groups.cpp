@@ -114,7 +114,8 @@ SphereGroups::SphereGroups(std::span<const Sphere> spheres, int looked_at_most, 
   }
 }
 
-std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum) {
+std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum, double least) {
+  const auto least_squared = static_cast<float>(least * least);
   cut_ = false;
   near_.clear();
   place_.clear();
@@ -137,17 +138,25 @@ std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum) {
     const std::size_t first = group.index * kGroup;
     const std::size_t last = std::min(first + kGroup, count_);
     if (group_margin_[group.index] >= groups_.radius[group.index]) {  // all of it is in view
-      for (std::size_t i = first; i < last; ++i) place_.push_back(static_cast<std::uint32_t>(i));
+      for (std::size_t i = first; i < last; ++i) keep_if_large(i, frustum, least_squared);
       continue;
     }
     margins_in(frustum, &items_.x[first], &items_.y[first], &items_.z[first], last - first, margin_.data());
     for (std::size_t i = first; i < last; ++i) {
-      if (margin_[i - first] >= -items_.radius[i]) place_.push_back(static_cast<std::uint32_t>(i));
+      if (margin_[i - first] >= -items_.radius[i]) keep_if_large(i, frustum, least_squared);
     }
   }
   if (place_.size() > chosen_most_) keep_largest(frustum);
   for (const std::uint32_t place : place_) chosen_.push_back(index_[place]);
   return chosen_;
+}
+
+void SphereGroups::keep_if_large(std::size_t place, const Frustum& frustum, float least_squared) {
+  const float x = items_.x[place] - frustum.p_WC.x();
+  const float y = items_.y[place] - frustum.p_WC.y();
+  const float z = items_.z[place] - frustum.p_WC.z();
+  const float radius = items_.radius[place];
+  if (radius * radius >= least_squared * (x * x + y * y + z * z)) place_.push_back(static_cast<std::uint32_t>(place));
 }
 
 void SphereGroups::keep_largest(const Frustum& frustum) {

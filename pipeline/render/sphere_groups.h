@@ -34,9 +34,10 @@ class SphereGroups {
   /// \param chosen_most  indices that it answers with.
   SphereGroups(std::span<const Sphere> spheres, int looked_at_most, int chosen_most);
 
+  /// \param least  spheres whose radius is less than so many times their distance are left out.
   /// \return indices into the spheres of those that touch the frustum, ascending when nothing had to be left out of a small map; valid until
   ///         the next call. Cost: about 10 instructions a group, and 10 a sphere in the groups that are in view.
-  std::span<const std::uint32_t> select(const Frustum& frustum);
+  std::span<const std::uint32_t> select(const Frustum& frustum, double least = 0.0);
 
   /// \return whether the last answer lacks something that may be in view.
   [[nodiscard]] bool cut() const { return cut_; }
@@ -54,6 +55,7 @@ class SphereGroups {
     std::uint32_t index;
   };
 
+  void keep_if_large(std::size_t place, const Frustum& frustum, float least_squared);
   void keep_largest(const Frustum& frustum);
 
   std::size_t count_;
