@@ -7,7 +7,7 @@ namespace cgsr::app {
 
 /// The simulator's tools link a ray tracer, the robot's program does not.
 void add_sim_command(CLI::App& app, int& exit_code) {
-  auto* command = app.add_subcommand("sim", "simulated worlds: render, export, info");
+  auto* command = app.add_subcommand("sim", "simulated worlds: render, export, run, info");
   command->footer("cgsr sim --help explains the rest; docs/simulator.md shows it.");
   command->set_help_flag();  // --help too is for the program that answers
   command->allow_extras();

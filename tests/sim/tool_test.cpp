@@ -20,6 +20,7 @@ using app::testing::Outcome;
 using app::testing::read_text;
 using app::testing::run_cgsr;
 using app::testing::ScratchFolder;
+using app::testing::write_text;
 using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -219,6 +220,25 @@ TEST_F(SimToolFault, PlacesThatCannotBeWrittenAreNamed) {
   EXPECT_THAT(outcome.errors, HasSubstr("file"));
   EXPECT_THAT(run_cgsr({"export", "--world", scratch_ / "room.toml", "--output", scratch_ / "e", "--errors=-1"}).errors,
               HasSubstr("not in 0..20"));
+}
+
+TEST(SimRun, PlaysAScenarioWithARobotThatNobodyCommands) {
+  const ScratchFolder folder;
+  write_text(folder / "room.toml", kRoom);
+  write_text(folder / "play.toml", "world = \"room.toml\"\nrobot = \"looker\"\nobject = \"ball\"\nends_at_s = 0.5\n");
+  const auto played = run_cgsr({"run", "--scenario", folder / "play.toml", "--size", "64x48", "--truth",
+                                folder / "truth.csv", "--video", folder / "play.avi"});
+  ASSERT_EQ(played.exit_code, 0) << played.errors;
+  EXPECT_THAT(played.output, HasSubstr("16 images"));
+  const std::string truth = read_text(folder / "truth.csv");
+  EXPECT_EQ(std::count(truth.begin(), truth.end(), '\n'), 17) << "a head and a row an image";
+  EXPECT_GT(fs::file_size(folder / "play.avi"), 1000U);
+}
+
+TEST(SimRunFault, SaysWhichScenariosThereAre) {
+  const auto refused = run_cgsr({"run", "--scenario", "hoem-follow"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("no scenario 'hoem-follow'"), HasSubstr("home-follow")));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "tools/sim/export_world.h"
 #include "tools/sim/render_world.h"
+#include "tools/sim/run_scenario.h"
 #include "tools/sim/words.h"
 #include "tools/sim/world_file.h"
 
@@ -82,6 +83,43 @@ void add_export(CLI::App& command, ExportWords& words) {
       ->capture_default_str();
 }
 
+struct RunWords {
+  std::string scenario, size;
+  ScenarioRun run;
+};
+
+void add_run(CLI::App& command, RunWords& words) {
+  command.add_option("--scenario", words.scenario, "a name in config/scenarios, such as home-follow, or a file")
+      ->required();
+  command.add_option("--seed", words.run.seed, "of noise, slip and how far actors go astray")
+      ->check(CLI::Range(0, 1000000000))
+      ->capture_default_str();
+  command.add_option("--duration", words.run.duration_s, "end after that many seconds")->check(CLI::PositiveNumber);
+  command.add_option("--size", words.size, "WIDTHxHEIGHT; 640x480 when not given");
+  command.add_option("--threads", words.run.threads, "the images do not depend on it")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command.add_option("--video", words.run.video, "the camera's images beside a plan of the home: .mkv, .avi or .mp4");
+  command.add_option("--truth", words.run.truth, "what is really there, a row an image: .csv");
+}
+
+int run(RunWords& words) {
+  const auto file = find_scenario(words.scenario);
+  if (!file) return complain(file.error());
+  words.run.scenario = *file;
+  if (!words.size.empty()) {
+    const auto size = parse_image_size(words.size);
+    if (!size) return complain(size.error());
+    words.run.width_px = size->width_px;
+    words.run.height_px = size->height_px;
+  }
+  const auto played = run_scenario(words.run);
+  if (!played) return complain(played.error());
+  fmt::print("{}: {} images, {:.2f} s; the object is in view in {}\n", words.scenario, played->images, played->seconds,
+             played->images_with_object);
+  return 0;
+}
+
 int render(RenderWords& words, bool time_given) {
   const auto world = load_world(words.world);
   if (!world) return complain(world.error());
@@ -127,6 +165,10 @@ int run_command_line(int argc, char** argv) {
   CLI::App* export_command = app.add_subcommand(
       "export", "a world's geometry as a map, and a calibrated copy of it, camera, mount and probes");
   add_export(*export_command, export_words);
+  RunWords run_words;
+  CLI::App* run_command =
+      app.add_subcommand("run", "a scenario, played with a robot that nobody commands: video and truth");
+  add_run(*run_command, run_words);
   std::string world;
   CLI::App* info_command =
       app.add_subcommand("info", "what is in a world: robots, views, lamps and their lines, actors");
@@ -137,6 +179,7 @@ int run_command_line(int argc, char** argv) {
     return app.exit(wrong) == 0 ? 0 : kUsage;
   }
   if (*render_command) return render(render_words, render_command->count("--time") > 0);
+  if (*run_command) return run(run_words);
   if (*export_command) return export_to_folder(export_words);
   return info(world);
 }

@@ -16,12 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where worlds lie: here, or above the program (build/release/cgsr-sim).
-std::vector<fs::path> world_folders() {
-  std::vector<fs::path> folders{"config/worlds"};
+// Where shipped files lie: here, or above the program (build/release/cgsr-sim).
+std::vector<fs::path> folders_of(const std::string& kind) {
+  std::vector<fs::path> folders{fs::path("config") / (kind + "s")};
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) folders.push_back(program.parent_path().parent_path().parent_path() / "config/worlds");
+  if (!error) folders.push_back(program.parent_path().parent_path().parent_path() / "config" / (kind + "s"));
   return folders;
 }
 
@@ -36,17 +36,16 @@ Result<int> find_named(const Things& things, const std::string& wanted, const ch
                           names.empty() ? "is none" : fmt::format("are {}", fmt::join(names, ", "))));
 }
 
-}  // namespace
-
-Result<fs::path> find_world(const std::string& name) {
-  if (name.empty()) return fail("no world is named");
+/// \param kind  "world" or "scenario".
+Result<fs::path> find_shipped(const std::string& kind, const std::string& name) {
+  if (name.empty()) return fail(fmt::format("no {} is named", kind));
   std::error_code error;
   if (fs::is_regular_file(name, error)) return fs::path(name);
   if (name.find('/') != std::string::npos || fs::path(name).has_extension()) {
     return fail(fmt::format("{}: {}", name, fs::exists(name, error) ? "not a file" : "there is no such file"));
   }
   std::vector<std::string> there;
-  for (const fs::path& folder : world_folders()) {
+  for (const fs::path& folder : folders_of(kind)) {
     const fs::path file = folder / (name + ".toml");
     if (fs::is_regular_file(file, error)) return file;
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
@@ -56,8 +55,18 @@ Result<fs::path> find_world(const std::string& name) {
   }
   std::sort(there.begin(), there.end());
   return fail(fmt::format(
-      "there is no world '{}'; {}", name,
+      "there is no {} '{}'; {}", kind, name,
       there.empty() ? "name its file" : fmt::format("there are {}, or name a file", fmt::join(there, ", "))));
+}
+
+}  // namespace
+
+Result<fs::path> find_world(const std::string& name) {
+  return find_shipped("world", name);
+}
+
+Result<fs::path> find_scenario(const std::string& name) {
+  return find_shipped("scenario", name);
 }
 
 Result<World> load_world(const std::string& name) {

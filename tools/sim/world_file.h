@@ -12,6 +12,9 @@ namespace cgsr::sim {
 /// built in). \return an error that names the worlds that there are.
 Result<std::filesystem::path> find_world(const std::string& name);
 
+/// The same of a scenario in config/scenarios.
+Result<std::filesystem::path> find_scenario(const std::string& name);
+
 /// Reads and builds it. \return every problem of the file, a line each.
 Result<World> load_world(const std::string& name);
 
