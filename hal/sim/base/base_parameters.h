@@ -18,8 +18,8 @@ inline constexpr std::array kBaseModeNames = {Named<BaseMode>{"disabled", BaseMo
 /// drives.
 struct BaseParameters {
   BaseMode mode = BaseMode::kBalance;
-  double acceleration_limit_mps2 = 3.0;
-  double velocity_lag_s = 0.05;
+  double acceleration_limit_mps2 = 3.5;
+  double velocity_lag_s = 0.03;
   double turn_acceleration_limit_radps2 = 6.0;
   double turn_lag_s = 0.08;
   double turn_knee_mps = 1.57;
