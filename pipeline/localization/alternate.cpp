@@ -1,0 +1,154 @@
+#include "pipeline/localization/alternate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+namespace cgsr::localization {
+namespace {
+
+constexpr float kShrink = 0.6F;            // of the matching radius with each round
+constexpr float kWholeOverlap_px = 20.0F;  // a shorter overlap weighs less
+constexpr float kLeastShare = 0.3F;
+constexpr float kNear_px = 2.0F;  // a match this far off explains half of its length
+constexpr std::size_t kMetricPieces = 48;
+constexpr double kUnseenDepth_m = 3.0;
+constexpr double kLeastDepth_m = 0.1;
+
+}  // namespace
+
+Belief::Belief(const Prior& given)
+    : prior(given), information(given.covariance.ldlt().solve(geometry::Matrix6d::Identity())) {}
+
+Alternation::Alternation(const world::Map& map, const LocalizerParameters& parameters, render::Expectation& expectation,
+                         const geometry::Camera& camera, std::size_t most_perceived)
+    : parameters_(parameters),
+      expectation_(&expectation),
+      camera_(camera),
+      view_(map, static_cast<std::size_t>(parameters.pieces_most)),
+      matcher_(static_cast<std::size_t>(parameters.pieces_most), most_perceived) {
+  visible_.reserve(static_cast<std::size_t>(parameters.pieces_most));
+  lines_.reserve(static_cast<std::size_t>(parameters.pieces_most) * 4);
+}
+
+void Alternation::look(const geometry::Pose& X_WC) {
+  expectation_->look(X_WC, camera_, visible_);
+  view_.take(visible_);
+  ++looks_;
+}
+
+geometry::Matrix6d Alternation::motion_metric(const geometry::Pose& X_WC) const {
+  geometry::Matrix6d M = geometry::Matrix6d::Zero();
+  double weight = 0.0;
+  const auto add = [&](const Eigen::Vector3d& p_W, double w) {
+    for (const Eigen::Vector2d& normal : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
+      double distance = 0.0;
+      Eigen::Matrix<double, 1, 6> J;
+      if (!distance_of({.p_W = p_W, .normal = normal}, X_WC, camera_, distance, J)) continue;
+      M.noalias() += w * J.transpose() * J;
+    }
+    weight += w;
+  };
+  const auto pieces = view_.projected();
+  const std::size_t stride = std::max<std::size_t>(1, pieces.size() / kMetricPieces);
+  for (std::size_t i = 0; i < pieces.size(); i += stride) {
+    const ProjectedPiece& piece = pieces[i];
+    if (std::min(piece.depth0_m, piece.depth1_m) < kLeastDepth_m) continue;
+    add(view_.point_at(piece, -0.5F * piece.half_length), piece.half_length);
+    add(view_.point_at(piece, 0.5F * piece.half_length), piece.half_length);
+  }
+  if (!(weight > 0.0)) {
+    for (int y = 0; y < 3; ++y) {
+      for (int x = 0; x < 3; ++x) {
+        const Eigen::Vector3d p_C((camera_.width_px * (x + 0.5) / 3.0 - camera_.cx_px) / camera_.fx_px,
+                                  (camera_.height_px * (y + 0.5) / 3.0 - camera_.cy_px) / camera_.fy_px, 1.0);
+        add(X_WC * (kUnseenDepth_m * p_C), 1.0);
+      }
+    }
+  }
+  return M / weight;
+}
+
+void Alternation::gather(std::span<const Match> matches, const SegmentTable& perceived) {
+  lines_.clear();
+  const bool paper = parameters_.method == Method::kPaper;
+  const double system = parameters_.system_sigma_px * parameters_.system_sigma_px;
+  for (const Match& match : matches) {
+    if (lines_.size() + 2 > lines_.capacity()) break;
+    const PerceivedEdge& edge = perceived.edges()[match.perceived];
+    const ProjectedPiece& piece = view_.projected()[match.projected];
+    LineDistance line;
+    line.normal = edge.normal().cast<double>();
+    line.offset_px = line.normal.dot(edge.middle.cast<double>());
+    if (!paper) {
+      const double share = std::clamp(match.overlap_px() / kWholeOverlap_px, kLeastShare, 1.0F);
+      line.sigma_px = std::sqrt((system + static_cast<double>(edge.sigma_px) * edge.sigma_px) / share);
+    }
+    line.p_W = view_.point_at(piece, match.from_px);
+    lines_.push_back(line);
+    line.p_W = view_.point_at(piece, match.to_px);
+    lines_.push_back(line);
+  }
+}
+
+float Alternation::explained_by(std::span<const Match> matches) const {
+  float whole = 0.0F;
+  for (const ProjectedPiece& piece : view_.projected()) whole += 2.0F * piece.half_length * piece.weight;
+  float found = 0.0F;
+  for (const Match& match : matches) {
+    const float scaled = match.effective_distance_px() / kNear_px;
+    found += match.overlap_px() * view_.projected()[match.projected].weight / (1.0F + scaled * scaled);
+  }
+  return whole > 0.0F ? std::min(1.0F, found / whole) : 0.0F;
+}
+
+Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
+                             const AlternateOptions& options, WorkBudget& budget) {
+  Estimate estimate;
+  estimate.solution.X_WC = start;
+  const auto least = static_cast<float>(parameters_.match_radius_least_px);
+  MatchingRules rules;
+  rules.radius_px = std::max(options.radius_px, least);
+  rules.angle_rad = static_cast<float>(parameters_.match_angle_deg * std::numbers::pi / 180.0);
+  SolverOptions solver;
+  solver.paper = parameters_.method == Method::kPaper;
+  solver.steps = 2;
+  geometry::Pose X_WC = start;
+  geometry::Pose looked_from = start;
+  bool look_now = options.look_first;
+  geometry::Matrix6d metric = geometry::Matrix6d::Zero();
+  for (int round = 0; round < options.rounds; ++round) {
+    if (!budget.grant()) break;
+    if (look_now) {
+      look(X_WC);
+      looked_from = X_WC;
+      look_now = false;
+    }
+    view_.project(X_WC, camera_);
+    if (round == 0) metric = motion_metric(X_WC);
+    const auto matches = matcher_.match(view_.projected(), perceived, rules);
+    gather(matches, perceived);
+    const Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
+    ++estimate.rounds;
+    estimate.expected = static_cast<int>(view_.projected().size());
+    estimate.matches = static_cast<int>(matches.size());
+    estimate.explained = explained_by(matches);
+    if (!solution.solved) break;
+    estimate.solved = true;
+    estimate.solution = solution;
+    const geometry::Vector6d step = geometry::step_between(X_WC, solution.X_WC);
+    const double moved = std::sqrt(step.dot(metric * step));
+    X_WC = solution.X_WC;
+    if (moved < parameters_.settled_px && rules.radius_px <= least) break;
+    const geometry::Vector6d since = geometry::step_between(looked_from, X_WC);
+    look_now = options.look_again && std::sqrt(since.dot(metric * since)) > parameters_.look_again_px;
+    if (!options.whole_matching) rules.radius_px = std::max(least, rules.radius_px * kShrink);
+  }
+  const geometry::Vector6d off = geometry::step_between(belief.prior.X_WC, estimate.solution.X_WC);
+  estimate.prior_chi2 = static_cast<float>(off.dot(belief.information * off));
+  return estimate;
+}
+
+}  // namespace cgsr::localization

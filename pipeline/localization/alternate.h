@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pipeline/localization/expected.h"
+#include "pipeline/localization/localizer_parameters.h"
+#include "pipeline/localization/matching.h"
+#include "pipeline/localization/segment_table.h"
+#include "pipeline/localization/solve.h"
+#include "pipeline/render/expectation.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::localization {
+
+/// A prior with what is needed of it again and again.
+struct Belief {
+  explicit Belief(const Prior& given);
+
+  Prior prior;
+  geometry::Matrix6d information;
+};
+
+/// A pose that expectation and maximisation settled on.
+struct Estimate {
+  bool solved = false;
+  Solution solution;
+  int expected = 0;
+  int matches = 0;
+  float explained = 0.0F;  ///< share of the expected visible length found, each edge by how sure it is to be perceived, near matches more.
+  float prior_chi2 = 0.0F;
+  int rounds = 0;
+};
+
+struct AlternateOptions {
+  int rounds = 6;
+  float radius_px = 24.0F;   ///< of the first round.
+  bool look_first = true;    ///< false: the pieces of the last look are good enough.
+  bool look_again = true;    ///< when the pose moved far.
+  bool whole_matching = false;  ///< radius stays (the paper's).
+};
+
+/// Expectation and maximisation (4.1): what is visible from the pose, matched with what was perceived, moves the pose; and again until it
+/// settles. Between full expectations the known pieces are projected anew.
+class Alternation {
+ public:
+  /// \param map, expectation  outlive it.
+  Alternation(const world::Map& map, const LocalizerParameters& parameters, render::Expectation& expectation,
+              const geometry::Camera& camera, std::size_t most_perceived);
+
+  /// \param budget  asked before each round.
+  Estimate refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
+                  const AlternateOptions& options, WorkBudget& budget);
+
+  /// Draws the expectation from a pose; project() and view() go with it.
+  void look(const geometry::Pose& X_WC);
+  void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }
+  [[nodiscard]] const ExpectedView& view() const { return view_; }
+
+  /// The square of the image's mean motion, px^2, for a step: step^T M step. From the pieces projected last; without any, from a wall 3 m away.
+  [[nodiscard]] geometry::Matrix6d motion_metric(const geometry::Pose& X_WC) const;
+
+  [[nodiscard]] int looks() const { return looks_; }
+  void reset_looks() { looks_ = 0; }
+
+ private:
+  void gather(std::span<const Match> matches, const SegmentTable& perceived);
+  [[nodiscard]] float explained_by(std::span<const Match> matches) const;
+
+  LocalizerParameters parameters_;
+  render::Expectation* expectation_;
+  geometry::Camera camera_;
+  ExpectedView view_;
+  Matcher matcher_;
+  std::vector<render::VisiblePiece> visible_;
+  std::vector<LineDistance> lines_;
+  int looks_ = 0;
+};
+
+}  // namespace cgsr::localization

@@ -1,0 +1,165 @@
+#include "pipeline/localization/localizer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pipeline/localization/alternate.h"
+#include "pipeline/localization/expected.h"
+#include "pipeline/localization/gate.h"
+#include "pipeline/localization/perceive.h"
+#include "pipeline/localization/search.h"
+#include "pipeline/render/depth_raster.h"
+
+namespace cgsr::localization {
+namespace {
+
+constexpr double kReachOfPrior = 2.5;  // sigmas of the prior that matching reaches from the prediction
+
+std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters,
+                                           const geometry::Camera& camera) {
+  if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
+  return std::make_unique<render::DepthRaster>(map, render::DepthRasterParameters{});
+}
+
+// Stronger's method works with all that it projects.
+LocalizerParameters fitted(LocalizerParameters parameters, const world::Map& map) {
+  if (parameters.method == Method::kStronger)
+    parameters.pieces_most = std::max(parameters.pieces_most, static_cast<int>(map.edges.size()));
+  if (parameters.method != Method::kGlCorrect) {
+    parameters.search = false;
+    parameters.gate = false;
+  }
+  return parameters;
+}
+
+}  // namespace
+
+struct Localizer::State {
+  State(const world::Map& given_map, const geometry::Camera& camera, const LocalizerParameters& given,
+        std::unique_ptr<render::Expectation> given_expectation)
+      : map(&given_map),
+        parameters(fitted(given, given_map)),
+        perception(camera),
+        expectation(given_expectation ? std::move(given_expectation)
+                                      : usual(given_map, parameters, perception.camera())),
+        alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
+        search(parameters, alternation, perception.camera()) {}
+
+  Correction from_one_start(const Belief& belief, double widest_px, WorkBudget& budget);
+  void judge(const Estimate& estimate, float lead, Correction& answer) const;
+
+  const world::Map* map;
+  LocalizerParameters parameters;
+  Perception perception;
+  std::unique_ptr<render::Expectation> expectation;
+  Alternation alternation;
+  Search search;
+};
+
+Localizer::Localizer(const world::Map& map, const geometry::Camera& camera, const LocalizerParameters& parameters,
+                     std::unique_ptr<render::Expectation> expectation)
+    : state_(std::make_unique<State>(map, camera, parameters, std::move(expectation))) {}
+Localizer::~Localizer() = default;
+Localizer::Localizer(Localizer&&) noexcept = default;
+Localizer& Localizer::operator=(Localizer&&) noexcept = default;
+
+void Localizer::carried(const geometry::Pose& X_C0C1) {
+  state_->search.carried(X_C0C1);
+}
+
+void Localizer::restart() {
+  state_->search.stop();
+}
+
+bool Localizer::searching() const {
+  return state_->search.running();
+}
+
+void Localizer::State::judge(const Estimate& estimate, float lead, Correction& answer) const {
+  const geometry::Matrix6d covariance = covariance_of(estimate, parameters);
+  answer.matches = estimate.matches;
+  answer.expected = estimate.expected;
+  answer.explained = estimate.explained;
+  answer.prior_chi2 = estimate.prior_chi2;
+  answer.lead = lead;
+  answer.rms_px = static_cast<float>(estimate.solution.rms_px);
+  answer.evidence = evidence_of(estimate, lead);
+  if (parameters.gate) {
+    answer.reason = gate(estimate, lead, covariance, parameters);
+  } else if (estimate.solved) {
+    answer.reason = Reason::kNone;
+  } else {
+    answer.reason = estimate.expected == 0 ? Reason::kNothingExpected : Reason::kTooFewMatches;
+  }
+  answer.corrected = answer.reason == Reason::kNone;
+  if (!answer.corrected) return;
+  answer.X_WC = estimate.solution.X_WC;
+  answer.covariance = covariance;
+}
+
+Correction Localizer::State::from_one_start(const Belief& belief, double widest_px, WorkBudget& budget) {
+  Correction answer;
+  AlternateOptions options;
+  options.rounds = parameters.iterations;
+  options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * widest_px + 2.0, parameters.match_radius_least_px,
+                                                    parameters.match_radius_px));
+  options.look_first = false;  // drawn already, for the prior's width
+  const Estimate estimate =
+      alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
+  if (estimate.rounds == 0) {
+    answer.reason = Reason::kNoBudget;
+    return answer;
+  }
+  judge(estimate, 1.0F, answer);
+  return answer;
+}
+
+Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBudget& budget,
+                              const std::uint8_t* mask) {
+  State& s = *state_;
+  Correction answer;
+  const auto refused = [&](Reason reason) {
+    answer = Correction{};
+    answer.reason = reason;
+    answer.X_WC = prior.X_WC;
+    answer.covariance = prior.covariance;
+    answer.segments = static_cast<int>(s.perception.edges().size());
+    answer.looks = s.alternation.looks();
+    return answer;
+  };
+  s.alternation.reset_looks();
+  if (s.map->edges.empty()) return refused(Reason::kNoMap);
+  const Reason seen = s.perception.perceive(image, mask);
+  if (seen != Reason::kNone) return refused(seen);
+  const Belief belief(prior);
+  if (!belief.information.allFinite() || !prior.X_WC.matrix().allFinite()) return refused(Reason::kFarFromPrior);
+
+  if (!s.search.running()) {
+    if (!budget.grant()) return refused(Reason::kNoBudget);
+    s.alternation.look(prior.X_WC);
+    s.alternation.project(prior.X_WC);
+    const PriorShape shape = PriorShape::of(prior.covariance, s.alternation.motion_metric(prior.X_WC));
+    if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px) {
+      answer = s.from_one_start(belief, shape.widest_px(), budget);
+    } else {
+      s.search.begin(belief);
+    }
+  }
+  if (s.search.running()) {
+    if (s.search.go_on(belief, s.perception.edges(), budget)) {
+      s.judge(s.search.best(), s.search.lead(), answer);
+    } else {
+      answer.reason = Reason::kSearching;
+    }
+    answer.starts = s.search.starts();
+  }
+  if (!answer.corrected) {
+    answer.X_WC = prior.X_WC;
+    answer.covariance = prior.covariance;
+  }
+  answer.segments = static_cast<int>(s.perception.edges().size());
+  answer.looks = s.alternation.looks();
+  return answer;
+}
+
+}  // namespace cgsr::localization

@@ -1,0 +1,274 @@
+#include "pipeline/localization/search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+namespace cgsr::localization {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+using geometry::Vector6d;
+
+constexpr double kSpread_px = 5.0;           // an axis of the prior that moves the image less needs no starts
+constexpr double kNeighbourSpread_px = 1.5;  // ... no neighbours
+constexpr double kFarthest = 2.5;            // sigmas
+constexpr double kDistinct_px = 3.0;
+constexpr std::size_t kKept = 12;
+constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
+constexpr int kNeighbourRounds = 4;
+constexpr float kStartPrior = 0.01F;  // of a start's squared sigmas from the prior, off its score
+
+// Acklam's rational approximation of the normal distribution's quantile; relative error below 1.2e-9.
+double normal_quantile(double p) {
+  constexpr std::array<double, 6> a = {-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
+                                       1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
+  constexpr std::array<double, 5> b = {-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
+                                       6.680131188771972e+01, -1.328068155288572e+01};
+  constexpr std::array<double, 6> c = {-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
+                                       -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
+  constexpr std::array<double, 4> d = {7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
+                                       3.754408661907416e+00};
+  const auto tail = [&](double q) {
+    return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) /
+           ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1.0);
+  };
+  if (p < 0.02425) return tail(std::sqrt(-2.0 * std::log(p)));
+  if (p > 1.0 - 0.02425) return -tail(std::sqrt(-2.0 * std::log(1.0 - p)));
+  const double q = p - 0.5;
+  const double r = q * q;
+  return (((((a[0] * r + a[1]) * r + a[2]) * r + a[3]) * r + a[4]) * r + a[5]) * q /
+         (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1.0);
+}
+
+// Passes grants on, and knows whether one was refused.
+class WatchedBudget final : public WorkBudget {
+ public:
+  explicit WatchedBudget(WorkBudget& budget) : budget_(&budget) {}
+  bool grant() override {
+    refused_ = refused_ || !budget_->grant();
+    return !refused_;
+  }
+  [[nodiscard]] bool refused() const { return refused_; }
+
+ private:
+  WorkBudget* budget_;
+  bool refused_ = false;
+};
+
+}  // namespace
+
+double even_normal(std::uint32_t index, int dimension) {
+  constexpr std::array<std::uint32_t, 6> kBases = {2, 3, 5, 7, 11, 13};
+  const std::uint32_t base = kBases[static_cast<std::size_t>(dimension)];
+  double value = 0.0;
+  double digit = 1.0;
+  for (std::uint32_t rest = index + 1; rest > 0; rest /= base) {
+    digit /= base;
+    value += digit * static_cast<double>(rest % base);
+  }
+  return normal_quantile(value);
+}
+
+PriorShape PriorShape::of(const Matrix6d& covariance, const Matrix6d& motion_metric) {
+  const Matrix6d root = covariance.llt().matrixL();
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(root.transpose() * motion_metric * root);
+  PriorShape shape;
+  // The widest axis first: Halton's smallest bases are the most even.
+  for (int i = 0; i < 6; ++i) {
+    shape.axes.col(i) = root * solver.eigenvectors().col(5 - i);
+    shape.motion_px[i] = std::sqrt(std::max(0.0, solver.eigenvalues()[5 - i]));
+  }
+  return shape;
+}
+
+Search::Search(const LocalizerParameters& parameters, Alternation& alternation, const geometry::Camera& camera)
+    : parameters_(parameters), alternation_(&alternation), field_(camera.width_px, camera.height_px) {
+  finalists_.reserve(static_cast<std::size_t>(parameters.finalists) + 1);
+  estimates_.reserve(kKept + 1);
+}
+
+float Search::rank_of(const Estimate& estimate) {
+  return estimate.solved ? estimate.explained - 0.02F * estimate.prior_chi2 : -10.0F;
+}
+
+double Search::motion_between(const Pose& a, const Pose& b) const {
+  const Vector6d step = geometry::step_between(a, b);
+  return std::sqrt(step.dot(metric_ * step));
+}
+
+void Search::begin(const Belief& belief) {
+  sequence_ += start_count_;
+  alternation_->look(belief.prior.X_WC);
+  alternation_->project(belief.prior.X_WC);
+  metric_ = alternation_->motion_metric(belief.prior.X_WC);
+  shape_ = PriorShape::of(belief.prior.covariance, metric_);
+  double cells = 1.0;
+  for (int i = 0; i < 6; ++i) {
+    if (shape_.motion_px[i] > kSpread_px) cells *= std::max(1.0, shape_.motion_px[i] / parameters_.start_spacing_px);
+  }
+  start_count_ = static_cast<std::uint32_t>(
+      std::min(static_cast<double>(parameters_.starts_most), std::ceil(parameters_.starts_per_cell * cells)));
+  next_start_ = 0;
+  next_finalist_ = 0;
+  next_neighbour_ = 0;
+  walk_ = 0;
+  improved_ = false;
+  X_WC_began_ = belief.prior.X_WC;
+  finalists_.clear();
+  estimates_.clear();
+  best_ = Estimate{};
+  lead_ = 0.0F;
+  stage_ = Stage::kStarts;
+}
+
+void Search::carried(const Pose& X_C0C1) {
+  if (!running()) return;
+  X_WC_began_ = X_WC_began_ * X_C0C1;
+  X_WC_walk_ = X_WC_walk_ * X_C0C1;
+  for (Candidate& candidate : finalists_) candidate.X_WC = candidate.X_WC * X_C0C1;
+  for (Estimate& estimate : estimates_) estimate.solution.X_WC = estimate.solution.X_WC * X_C0C1;
+}
+
+bool Search::try_starts(const Belief& belief, WorkBudget& budget, int& units) {
+  while (next_start_ < start_count_) {
+    if (units <= 0 || !budget.grant()) return false;
+    --units;
+    Vector6d step = Vector6d::Zero();
+    if (next_start_ > 0) {
+      for (int i = 0; i < 6; ++i) {
+        if (shape_.motion_px[i] < kSpread_px) continue;
+        const double z = even_normal(sequence_ + next_start_, i);
+        step += std::clamp(z, -kFarthest, kFarthest) * shape_.axes.col(i);
+      }
+    }
+    ++next_start_;
+    Candidate candidate{.X_WC = geometry::moved(X_WC_began_, step)};
+    alternation_->look(candidate.X_WC);
+    alternation_->project(candidate.X_WC);
+    const Vector6d off = geometry::step_between(belief.prior.X_WC, candidate.X_WC);
+    candidate.score = field_.score(alternation_->view().projected()) -
+                      kStartPrior * static_cast<float>(off.dot(belief.information * off));
+    const auto place = std::upper_bound(finalists_.begin(), finalists_.end(), candidate,
+                                        [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    finalists_.insert(place, candidate);
+    if (finalists_.size() > static_cast<std::size_t>(parameters_.finalists)) finalists_.pop_back();
+  }
+  return true;
+}
+
+void Search::keep(const Estimate& estimate) {
+  if (!estimate.solved) return;
+  for (auto known = estimates_.begin(); known != estimates_.end(); ++known) {
+    if (motion_between(known->solution.X_WC, estimate.solution.X_WC) > kDistinct_px) continue;
+    if (rank_of(*known) >= rank_of(estimate)) return;
+    estimates_.erase(known);
+    break;
+  }
+  const auto place = std::upper_bound(estimates_.begin(), estimates_.end(), estimate,
+                                      [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
+  estimates_.insert(place, estimate);
+  if (estimates_.size() > kKept) estimates_.pop_back();
+}
+
+bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
+  const AlternateOptions options{.rounds = parameters_.iterations,
+                                 .radius_px = static_cast<float>(parameters_.match_radius_px)};
+  while (next_finalist_ < finalists_.size()) {
+    if (units <= 0) return false;
+    units -= kFinalistUnits;
+    WatchedBudget watched(budget);
+    const Estimate estimate =
+        alternation_->refine(finalists_[next_finalist_].X_WC, belief, perceived, options, watched);
+    if (watched.refused()) return false;
+    ++next_finalist_;
+    keep(estimate);
+  }
+  return true;
+}
+
+bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
+  if (estimates_.empty()) return true;
+  const AlternateOptions options{
+      .rounds = kNeighbourRounds, .radius_px = 0.5F * static_cast<float>(parameters_.match_radius_px)};
+  while (walk_ < parameters_.walks) {
+    if (next_neighbour_ == 0) {
+      X_WC_walk_ = estimates_.front().solution.X_WC;
+      improved_ = false;
+    }
+    while (next_neighbour_ < static_cast<std::uint32_t>(parameters_.neighbours)) {
+      if (units <= 0) return false;
+      units -= 1;
+      Vector6d step = Vector6d::Zero();
+      for (int i = 0; i < 6; ++i) {
+        if (shape_.motion_px[i] < kNeighbourSpread_px) continue;
+        const double most = std::min(1.5, parameters_.start_spacing_px / shape_.motion_px[i]);
+        const std::uint32_t number =
+            static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
+        step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
+      }
+      WatchedBudget watched(budget);
+      const Estimate estimate =
+          alternation_->refine(geometry::moved(X_WC_walk_, step), belief, perceived, options, watched);
+      if (watched.refused()) return false;
+      ++next_neighbour_;
+      const float before = rank_of(estimates_.front());
+      keep(estimate);
+      if (rank_of(estimates_.front()) > before + 0.01F &&
+          motion_between(estimates_.front().solution.X_WC, X_WC_walk_) > kDistinct_px)
+        improved_ = true;
+    }
+    next_neighbour_ = 0;
+    ++walk_;
+    if (!improved_) break;
+  }
+  return true;
+}
+
+// On the image at hand: the last word between the best and those that come next.
+void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
+  const AlternateOptions options{.rounds = parameters_.iterations,
+                                 .radius_px = static_cast<float>(2.0 * parameters_.match_radius_least_px)};
+  UnlimitedBudget whole;
+  best_ = Estimate{};
+  lead_ = 1.0F;
+  if (estimates_.empty()) return;
+  constexpr std::size_t kJudged = 3;
+  std::array<Estimate, kJudged> judged;
+  const std::size_t count = std::min(kJudged, estimates_.size());
+  for (std::size_t i = 0; i < count; ++i)
+    judged[i] = alternation_->refine(estimates_[i].solution.X_WC, belief, perceived, options, whole);
+  std::sort(judged.begin(), judged.begin() + static_cast<std::ptrdiff_t>(count),
+            [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
+  best_ = judged[0];
+  for (std::size_t i = 1; i < count; ++i) {
+    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kDistinct_px) continue;
+    lead_ = std::min(lead_, rank_of(best_) - rank_of(judged[i]));
+    break;
+  }
+}
+
+bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
+  int units = parameters_.starts_per_image > 0 ? parameters_.starts_per_image : 1 << 30;
+  if (stage_ == Stage::kStarts) {
+    field_.build(perceived);
+    if (!try_starts(belief, budget, units)) return false;
+    stage_ = Stage::kFinalists;
+  }
+  if (stage_ == Stage::kFinalists) {
+    if (!refine_finalists(belief, perceived, budget, units)) return false;
+    stage_ = Stage::kNeighbours;
+  }
+  if (stage_ == Stage::kNeighbours) {
+    if (!try_neighbours(belief, perceived, budget, units)) return false;
+    verdict(belief, perceived);
+    stage_ = Stage::kIdle;
+  }
+  return true;
+}
+
+}  // namespace cgsr::localization

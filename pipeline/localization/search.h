@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/localization/alternate.h"
+#include "pipeline/localization/direction_field.h"
+#include "pipeline/localization/localizer_parameters.h"
+
+namespace cgsr::localization {
+
+/// A prior seen as motion of the image: the columns of `axes` are independent steps of one sigma, each of which moves the image by motion_px.
+struct PriorShape {
+  geometry::Matrix6d axes = geometry::Matrix6d::Zero();
+  geometry::Vector6d motion_px = geometry::Vector6d::Zero();
+
+  static PriorShape of(const geometry::Matrix6d& covariance, const geometry::Matrix6d& motion_metric);
+
+  /// Along the axis that moves the image most.
+  [[nodiscard]] double widest_px() const { return motion_px.maxCoeff(); }
+};
+
+/// Number `index` of a sequence of standard normal numbers whose tuples over `dimension` (0..5) fill space evenly (Halton's).
+double even_normal(std::uint32_t index, int dimension);
+
+/// Finds the pose in a wide prior: starts spread evenly over it, scored without matching; the best of them refined; then poses about the
+/// winner, because two borders of one frame look alike and the right one may not have been tried. Goes on over several images.
+class Search {
+ public:
+  Search(const LocalizerParameters& parameters, Alternation& alternation, const geometry::Camera& camera);
+
+  /// Begins anew about the belief.
+  void begin(const Belief& belief);
+  void stop() { stage_ = Stage::kIdle; }
+  [[nodiscard]] bool running() const { return stage_ != Stage::kIdle; }
+
+  /// Works on one image as far as the budget goes. \return whether the search came to its end: best() and lead() hold.
+  bool go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget);
+
+  void carried(const geometry::Pose& X_C0C1);
+
+  [[nodiscard]] const Estimate& best() const { return best_; }
+  [[nodiscard]] float lead() const { return lead_; }
+  [[nodiscard]] int starts() const { return static_cast<int>(next_start_); }
+
+ private:
+  enum class Stage : std::uint8_t { kIdle, kStarts, kFinalists, kNeighbours };
+  struct Candidate {
+    geometry::Pose X_WC = geometry::Pose::Identity();
+    float score = 0.0F;
+  };
+
+  bool try_starts(const Belief& belief, WorkBudget& budget, int& units);
+  bool refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
+  bool try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
+  void verdict(const Belief& belief, const SegmentTable& perceived);
+  void keep(const Estimate& estimate);
+  [[nodiscard]] double motion_between(const geometry::Pose& a, const geometry::Pose& b) const;
+  static float rank_of(const Estimate& estimate);
+
+  LocalizerParameters parameters_;
+  Alternation* alternation_;
+  DirectionField field_;
+  Stage stage_ = Stage::kIdle;
+  geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
+  PriorShape shape_;
+  std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
+  std::uint32_t start_count_ = 0;
+  std::uint32_t next_start_ = 0;
+  std::uint32_t next_finalist_ = 0;
+  std::uint32_t next_neighbour_ = 0;
+  int walk_ = 0;
+  bool improved_ = false;
+  geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
+  geometry::Pose X_WC_began_ = geometry::Pose::Identity();
+  std::vector<Candidate> finalists_;  ///< best first.
+  std::vector<Estimate> estimates_;   ///< distinct, best first.
+  Estimate best_;
+  float lead_ = 0.0F;
+};
+
+}  // namespace cgsr::localization

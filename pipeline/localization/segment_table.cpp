@@ -1,0 +1,57 @@
+#include "pipeline/localization/segment_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cgsr::localization {
+
+SegmentTable::SegmentTable(std::size_t capacity) : capacity_(capacity) {
+  added_.reserve(capacity);
+  sorted_.reserve(capacity);
+  x_.reserve(capacity);
+  y_.reserve(capacity);
+  half_length_.reserve(capacity);
+}
+
+void SegmentTable::clear() {
+  added_.clear();
+  sorted_.clear();
+  first_.fill(0);
+}
+
+void SegmentTable::add(const PerceivedEdge& edge) {
+  if (added_.size() < capacity_) added_.push_back(edge);
+}
+
+int SegmentTable::bin_of(const Eigen::Vector2f& direction) {
+  const float turn = std::atan2(direction.y(), direction.x()) / (2.0F * std::numbers::pi_v<float>);  // -0.5 .. 0.5
+  const int bin = static_cast<int>(std::floor(turn * kBins)) + kBins;
+  return bin % kBins;
+}
+
+void SegmentTable::finish() {
+  // By counting: the edges of a bin keep their order.
+  std::array<std::size_t, kBins> next{};
+  for (const PerceivedEdge& edge : added_) ++next[static_cast<std::size_t>(bin_of(edge.direction))];
+  std::size_t sum = 0;
+  for (std::size_t bin = 0; bin < next.size(); ++bin) {
+    first_[bin] = sum;
+    sum += next[bin];
+    next[bin] = first_[bin];
+  }
+  first_[kBins] = sum;
+  sorted_.resize(sum);
+  x_.resize(sum);
+  y_.resize(sum);
+  half_length_.resize(sum);
+  for (const PerceivedEdge& edge : added_) {
+    const std::size_t i = next[static_cast<std::size_t>(bin_of(edge.direction))]++;
+    sorted_[i] = edge;
+    x_[i] = edge.middle.x();
+    y_[i] = edge.middle.y();
+    half_length_[i] = edge.half_length;
+  }
+}
+
+}  // namespace cgsr::localization
