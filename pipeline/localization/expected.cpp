@@ -42,20 +42,22 @@ bool inside(const world::Map& map, const world::Surface& surface, const Eigen::V
   return false;
 }
 
-// Which way the surface lies from the edge; zero when neither way is inside.
-Eigen::Vector3f inward_of(const world::Map& map, const world::Edge& edge, std::uint32_t surface_index, float sign) {
+// Which way a surface lies from an edge: the one that is inside of it. Where both are (a box on a floor), the one that leads the way that
+// `hint` does.
+Eigen::Vector3f inward_of(const world::Map& map, const world::Edge& edge, std::uint32_t surface_index,
+                          const Eigen::Vector3f& hint) {
   const world::Surface& surface = map.surfaces[surface_index];
   const Eigen::Vector3f& a = map.vertices[edge.vertices[0]];
   const Eigen::Vector3f& b = map.vertices[edge.vertices[1]];
   const float length = (b - a).norm();
   if (!(length > 0.0F)) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f across = sign * surface.normal.cross((b - a) / length);
-  // Large surfaces of many triangles are believed to be as the map says, without a look.
+  Eigen::Vector3f across = surface.normal.cross((b - a) / length);
+  if (across.dot(hint) < 0.0F) across = -across;
+  // Large surfaces of many triangles are believed to lie as hinted, without a look.
   if (surface.triangle_count > 2000) return across;
   const float step = std::min(0.002F, 0.05F * length);
   const Eigen::Vector3f middle = 0.5F * (a + b);
-  if (inside(map, surface, middle + step * across)) return across;
-  if (inside(map, surface, middle - step * across)) return -across;
+  if (!inside(map, surface, middle + step * across) && inside(map, surface, middle - step * across)) return -across;
   return across;
 }
 
@@ -115,13 +117,9 @@ std::vector<EdgeSides> sides_of(const world::Map& map) {
     const world::Edge& edge = map.edges[i];
     EdgeSides& sides = result[i];
     sides.weight = std::clamp(edge.contrast / kSurelySeenContrast, kLeastWeight, 1.0F);
-    for (std::size_t k = 0; k < 2; ++k) {
-      if (edge.surfaces[k] != world::kNone)
-        sides.inward[k] = inward_of(map, edge, edge.surfaces[k], k == 0 ? 1.0F : -1.0F);
-    }
-    if (edge.surfaces[0] == world::kNone || edge.surfaces[1] == world::kNone) continue;
-    const world::Surface& s0 = map.surfaces[edge.surfaces[0]];
-    const world::Surface& s1 = map.surfaces[edge.surfaces[1]];
+    if (edge.sides[0] == world::kNone || edge.sides[1] == world::kNone) continue;
+    const world::Surface& s0 = map.surfaces[edge.sides[0]];
+    const world::Surface& s1 = map.surfaces[edge.sides[1]];
     const world::Material& m0 = map.materials[s0.material];
     const world::Material& m1 = map.materials[s1.material];
     if (!m0.known_color || !m1.known_color) continue;
@@ -130,6 +128,18 @@ std::vector<EdgeSides> sides_of(const world::Map& map) {
     const float least = flat ? kLeastRatioFlat : kLeastRatioCrease;
     if (ratio > least) sides.brighter = 0;
     if (ratio < 1.0F / least) sides.brighter = 1;
+    if (sides.brighter < 0) continue;
+    // An adjacent surface lies as Edge says; what covers the other side, or lies under it, on that side of the edge and in front.
+    const Eigen::Vector3f up = map.vertices[edge.vertices[1]] - map.vertices[edge.vertices[0]];
+    const std::size_t own = edge.sides[0] == edge.surfaces[0] || edge.sides[1] != edge.surfaces[1] ? 0 : 1;
+    const std::size_t other = 1 - own;
+    const Eigen::Vector3f normal = map.surfaces[edge.sides[own]].normal;
+    const Eigen::Vector3f left = normal.cross(up).normalized();
+    sides.inward[own] = inward_of(map, edge, edge.sides[own], own == 0 ? left : Eigen::Vector3f(-left));
+    sides.inward[other] = inward_of(map, edge, edge.sides[other],
+                                    edge.sides[other] == edge.surfaces[other]
+                                        ? Eigen::Vector3f(-sides.inward[own])
+                                        : Eigen::Vector3f(normal - sides.inward[own]));
   }
   return result;
 }

@@ -15,10 +15,9 @@ namespace {
 
 constexpr double kReachOfPrior = 2.5;  // sigmas of the prior that matching reaches from the prediction
 
-std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters,
-                                           const geometry::Camera& camera) {
+std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters) {
   if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
-  return std::make_unique<render::DepthRaster>(map, render::DepthRasterParameters{});
+  return std::make_unique<render::DepthRaster>(map, render::RasterParameters{});
 }
 
 // Stronger's method works with all that it projects.
@@ -41,7 +40,7 @@ struct Localizer::State {
         parameters(fitted(given, given_map)),
         perception(camera),
         expectation(given_expectation ? std::move(given_expectation)
-                                      : usual(given_map, parameters, perception.camera())),
+                                      : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
         search(parameters, alternation, perception.camera()) {}
 

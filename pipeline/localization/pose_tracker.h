@@ -69,18 +69,25 @@ class PoseTracker {
   /// The robot moved by X_R0R1 since the last call, as its odometry says, aligned to the coming image's exposure.
   void moved(const geometry::Pose& X_R0R1);
 
+  /// The robot's pitch at the coming image's exposure as its base measures it, positive nose down; 0 until told. Only where the floor counts.
+  void pitched(double pitch_rad) { pitch_rad_ = pitch_rad; }
+
   /// Looks at an image. Never damages the pose: what the gate refuses leaves the prediction.
   const TrackedPose& see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask = nullptr);
 
   [[nodiscard]] const TrackedPose& now() const { return now_; }
 
  private:
+  void flatten();
   void widen();
 
   Localizer* localizer_;
   geometry::Pose X_RC_;
   PoseTrackerParameters parameters_;
   TrackedPose now_;
+  double pitch_rad_ = 0.0;
+  double driven_m_ = 0.0;  ///< since the last correction: slip adds up along it.
+  double turned_rad_ = 0.0;
 };
 
 }  // namespace cgsr::localization

@@ -1,0 +1,135 @@
+#include "pipeline/localization/pose_tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace cgsr::localization {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// An error that is the same share of every step adds up along the way: what this step adds to the variance.
+double grown(double share, double before, double step) {
+  return share * share * (2.0 * before * step + step * step);
+}
+
+// Nothing was seen: that is no evidence that the pose is elsewhere.
+bool says_nothing(Reason reason) {
+  return reason == Reason::kSearching || reason == Reason::kWrongSize || reason == Reason::kTooDark ||
+         reason == Reason::kTooBright || reason == Reason::kTooFewEdges || reason == Reason::kNoBudget ||
+         reason == Reason::kNoMap;
+}
+
+}  // namespace
+
+std::string_view name_of(TrackState state) {
+  switch (state) {
+    case TrackState::kUnsure:
+      return "unsure";
+    case TrackState::kTracking:
+      return "tracking";
+    case TrackState::kLost:
+      return "lost";
+    case TrackState::kRecovered:
+      return "recovered";
+  }
+  return "";
+}
+
+PoseTracker::PoseTracker(Localizer& localizer, const Pose& X_RC, const PoseTrackerParameters& parameters)
+    : localizer_(&localizer), X_RC_(X_RC), parameters_(parameters) {}
+
+void PoseTracker::start(const Prior& prior) {
+  localizer_->restart();
+  now_ = TrackedPose{};
+  now_.X_WC = prior.X_WC;
+  now_.covariance = prior.covariance;
+  driven_m_ = 0.0;
+  turned_rad_ = 0.0;
+}
+
+void PoseTracker::moved(const Pose& X_R0R1) {
+  if (!X_R0R1.matrix().allFinite()) return;
+  const Pose X_C0C1 = X_RC_.inverse() * X_R0R1 * X_RC_;
+  const Eigen::Vector3d way_W = now_.X_WC.linear() * X_C0C1.translation();
+  // An error of the direction swings what comes after it.
+  Matrix6d F = Matrix6d::Identity();
+  F.topRightCorner<3, 3>() << 0.0, way_W.z(), -way_W.y(), -way_W.z(), 0.0, way_W.x(), way_W.y(), -way_W.x(), 0.0;
+  now_.covariance = F * now_.covariance * F.transpose();
+  now_.X_WC = geometry::normalized(now_.X_WC * X_C0C1);
+
+  const double way_m = X_R0R1.translation().norm();
+  const double turn_rad = geometry::vector_of(X_R0R1.linear()).norm();
+  const double place = grown(parameters_.slip, driven_m_, way_m) + parameters_.drift_m * parameters_.drift_m;
+  const double drift_rad = parameters_.drift_deg * kDegree;
+  const double turn = grown(parameters_.slip_turn, turned_rad_, turn_rad) + drift_rad * drift_rad;
+  driven_m_ += way_m;
+  turned_rad_ += turn_rad;
+  now_.covariance(0, 0) += place;
+  now_.covariance(1, 1) += place;
+  now_.covariance(5, 5) += turn;
+  if (!parameters_.floor) {
+    now_.covariance(2, 2) += place;
+    now_.covariance(3, 3) += turn;
+    now_.covariance(4, 4) += turn;
+  }
+  localizer_->carried(X_C0C1);
+}
+
+// A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along.
+void PoseTracker::flatten() {
+  const Pose X_WR = now_.X_WC * X_RC_.inverse();
+  const Pose level = geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
+  Pose tilt = Pose::Identity();
+  tilt.linear() = Eigen::AngleAxisd(pitch_rad_, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  now_.X_WC = level * tilt * X_RC_;
+  for (const int i : {2, 3, 4}) {
+    now_.covariance.row(i).setZero();
+    now_.covariance.col(i).setZero();
+  }
+  const double tilt_rad = parameters_.tilt_deg * kDegree;
+  now_.covariance(2, 2) = parameters_.height_m * parameters_.height_m;
+  now_.covariance(3, 3) = tilt_rad * tilt_rad;
+  now_.covariance(4, 4) = tilt_rad * tilt_rad;
+}
+
+void PoseTracker::widen() {
+  const double wide_rad = parameters_.wide_deg * kDegree;
+  for (int i = 0; i < 6; ++i) {
+    if (parameters_.floor && i >= 2 && i <= 4) continue;
+    const double most = i < 3 ? parameters_.wide_m : wide_rad;
+    const double sigma = std::sqrt(now_.covariance(i, i));
+    // Scaling rows and columns alike keeps it a covariance.
+    const double factor = std::max(1.0, std::min(parameters_.widen, most / sigma));
+    now_.covariance.row(i) *= factor;
+    now_.covariance.col(i) *= factor;
+  }
+}
+
+const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask) {
+  if (parameters_.floor) flatten();
+  now_.correction =
+      localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = now_.covariance}, budget, mask);
+  if (now_.correction.corrected) {
+    now_.X_WC = now_.correction.X_WC;
+    now_.covariance = now_.correction.covariance;
+    now_.images_since_correction = 0;
+    driven_m_ = 0.0;
+    turned_rad_ = 0.0;
+    now_.state = now_.state == TrackState::kLost ? TrackState::kRecovered : TrackState::kTracking;
+    return now_;
+  }
+  ++now_.images_since_correction;
+  if (now_.state == TrackState::kRecovered) now_.state = TrackState::kTracking;
+  if (now_.images_since_correction >= parameters_.lost_after) now_.state = TrackState::kLost;
+  if (now_.state == TrackState::kLost && !says_nothing(now_.correction.reason)) widen();
+  return now_;
+}
+
+}  // namespace cgsr::localization

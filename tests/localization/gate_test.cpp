@@ -1,0 +1,64 @@
+#include "pipeline/localization/gate.h"
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+namespace cgsr::localization {
+namespace {
+
+Estimate good() {
+  Estimate estimate;
+  estimate.solved = true;
+  estimate.expected = 20;
+  estimate.matches = 15;
+  estimate.explained = 0.8F;
+  estimate.prior_chi2 = 4.0F;
+  estimate.solution.rms_px = 0.5;
+  estimate.solution.information = geometry::Matrix6d::Identity() * 1e6;
+  return estimate;
+}
+
+Reason judged(const Estimate& estimate, float lead = 0.3F) {
+  const LocalizerParameters parameters;
+  return gate(estimate, lead, covariance_of(estimate, parameters), parameters);
+}
+
+TEST(Gate, LetsThroughWhatIsSure) {
+  EXPECT_EQ(judged(good()), Reason::kNone);
+}
+
+TEST(Gate, NamesWhatIsMissing) {
+  Estimate estimate = good();
+  estimate.expected = 1;
+  EXPECT_EQ(judged(estimate), Reason::kNothingExpected);
+  estimate = good();
+  estimate.matches = 3;
+  EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
+  estimate = good();
+  estimate.solved = false;
+  EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
+  estimate = good();
+  estimate.explained = 0.3F;
+  EXPECT_EQ(judged(estimate), Reason::kUnexplained);
+  estimate = good();
+  estimate.solution.rms_px = 3.0;
+  EXPECT_EQ(judged(estimate), Reason::kResidual);
+  estimate = good();
+  estimate.prior_chi2 = 30.0F;
+  EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
+  EXPECT_EQ(judged(good(), 0.001F), Reason::kAmbiguous);
+  estimate = good();
+  estimate.solution.information(0, 0) = 1.0;  // 1 m along x
+  EXPECT_EQ(judged(estimate), Reason::kUncertain);
+}
+
+TEST(Gate, CovarianceHoldsTheMapsOwnError) {
+  LocalizerParameters parameters;
+  parameters.map_sigma_m = 0.02;
+  const geometry::Matrix6d covariance = covariance_of(good(), parameters);
+  EXPECT_NEAR(covariance(0, 0), 1e-6 + 4e-4, 1e-12);
+  EXPECT_NEAR(covariance(3, 3), 1e-6, 1e-12);
+}
+
+}  // namespace
+}  // namespace cgsr::localization

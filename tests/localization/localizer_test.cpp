@@ -1,0 +1,292 @@
+#include "pipeline/localization/localizer.h"
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/localization/random_numbers.h"
+#include "tests/localization/small_room.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cgsr::localization {
+namespace {
+
+using geometry::Pose;
+using geometry::Vector6d;
+using testing::in_small_room;
+using testing::Picture;
+using testing::RandomNumbers;
+using testing::small_room;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+geometry::Camera room_camera() {
+  geometry::Camera camera = geometry::Camera{}.scaled_to(320, 240);
+  camera.k1 = -0.075;
+  camera.k2 = 0.045;
+  return camera;
+}
+
+struct Error {
+  double position_m;
+  double direction_deg;
+};
+Error error_of(const Pose& truth, const Pose& answer) {
+  const Vector6d step = geometry::step_between(truth, answer);
+  return {step.head<3>().norm(), step.tail<3>().norm() / kDegree};
+}
+
+Prior drawn_prior(const Pose& truth, const PriorSigmas& sigmas, RandomNumbers& random) {
+  Prior prior = prior_at(truth, sigmas);
+  Vector6d off;
+  for (int i = 0; i < 6; ++i) off[i] = std::sqrt(prior.covariance(i, i)) * std::clamp(random.normal(), -2.5, 2.5);
+  prior.X_WC = geometry::moved(truth, off);
+  return prior;
+}
+
+// The same image until there is an answer, as a robot that stands.
+Correction answer_of(Localizer& localizer, const ImageView& image, const Prior& prior, int& images) {
+  UnlimitedBudget budget;
+  Correction answer;
+  for (images = 1; images < 200; ++images) {
+    answer = localizer.correct(image, prior, budget);
+    if (answer.reason != Reason::kSearching) break;
+  }
+  return answer;
+}
+
+constexpr PriorSigmas kTracking{.x_m = 0.02, .y_m = 0.02, .z_m = 0.005, .heading_rad = 0.01, .tilt_rad = 0.005};
+
+TEST(Localizer, CorrectsANarrowPriorFromOneImage) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  RandomNumbers random(11);
+  for (int trial = 0; trial < 12; ++trial) {
+    const Pose truth = in_small_room(random.uniform(0.8, 1.6), random.uniform(1.2, 2.2), random.uniform(-0.2, 0.7));
+    const Picture picture(map, truth, camera, 1.5, static_cast<std::uint32_t>(trial));
+    int images = 0;
+    const Correction answer = answer_of(localizer, picture.view(), drawn_prior(truth, kTracking, random), images);
+    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_EQ(images, 1);
+    const Error error = error_of(truth, answer.X_WC);
+    EXPECT_LT(error.position_m, 0.015);
+    EXPECT_LT(error.direction_deg, 0.3);
+    EXPECT_GE(answer.matches, 10);
+  }
+}
+
+TEST(Localizer, FindsThePoseInAWidePrior) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  LocalizerParameters parameters;
+  parameters.starts_per_image = 0;
+  Localizer localizer(map, camera, parameters);
+  RandomNumbers random(12);
+  int corrected = 0;
+  for (int trial = 0; trial < 6; ++trial) {
+    const Pose truth = in_small_room(random.uniform(0.8, 1.6), random.uniform(1.2, 2.2), random.uniform(-0.2, 0.7));
+    const Picture picture(map, truth, camera, 1.5, static_cast<std::uint32_t>(trial));
+    int images = 0;
+    const Correction answer =
+        answer_of(localizer, picture.view(), drawn_prior(truth, PriorSigmas::floor(), random), images);
+    if (!answer.corrected) continue;
+    ++corrected;
+    const Error error = error_of(truth, answer.X_WC);
+    EXPECT_LT(error.position_m, 0.02);
+    EXPECT_LT(error.direction_deg, 0.5);
+  }
+  EXPECT_GE(corrected, 5);
+}
+
+// Eight starts an image: the search goes on over several, and hypotheses move with the camera.
+TEST(Localizer, SearchesOverImagesOfAMovingCamera) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  Pose truth = in_small_room(1.0, 1.6, 0.2);
+  Pose believed = geometry::moved(truth, (Vector6d() << 0.12, -0.1, 0.0, 0.0, 0.0, 4.0 * kDegree).finished());
+  const Pose X_RC = in_small_room(0.0, 0.0, 0.0);
+  const Pose X_C0C1 = X_RC.inverse() * geometry::pose_on_floor(0.004, 0.0, 0.002) * X_RC;
+  UnlimitedBudget budget;
+  Correction answer;
+  int images = 0;
+  for (; images < 60; ++images) {
+    const Picture picture(map, truth, camera, 1.5, static_cast<std::uint32_t>(images));
+    answer = localizer.correct(picture.view(), prior_at(believed, PriorSigmas::floor()), budget);
+    if (answer.reason != Reason::kSearching) break;
+    EXPECT_TRUE(localizer.searching());
+    EXPECT_LE(answer.looks, 40);
+    truth = truth * X_C0C1;
+    believed = believed * X_C0C1;
+    localizer.carried(X_C0C1);
+  }
+  EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+  EXPECT_GT(images, 3);
+  EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.02);
+}
+
+TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
+  testing::MapBuilder b;
+  const std::uint32_t floor = b.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, b.grey(0.2F));
+  const std::uint32_t white = b.grey(0.9F);
+  for (int i = 0; i < 4; ++i) {
+    b.rectangle({1.0F + 0.6F * static_cast<float>(i), -0.8F, 0.002F}, {0.2F, 0, 0}, {0, 1.7F, 0}, white, floor);
+  }
+  const Pose truth = in_small_room(-0.2, 0.1, 0.05);
+  const Picture picture(b.map, truth, room_camera(), 1.0, 3);
+  RandomNumbers random(13);
+  const Prior prior = drawn_prior(truth, kTracking, random);
+  for (const Method method : {Method::kStronger, Method::kGlCorrect, Method::kPaper}) {
+    LocalizerParameters parameters;
+    parameters.method = method;
+    Localizer localizer(b.map, room_camera(), parameters);
+    UnlimitedBudget budget;
+    const Correction answer = localizer.correct(picture.view(), prior, budget);
+    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.03);
+  }
+}
+
+class LocalizerFault : public ::testing::Test {
+ protected:
+  LocalizerFault() : map_(small_room()), camera_(room_camera()), localizer_(map_, camera_, {}) {
+    prior_ = prior_at(in_small_room(1.0, 1.6, 0.2), kTracking);
+  }
+  void expect_untouched(const std::vector<std::uint8_t>& pixels, Reason reason) {
+    const ImageView image{.data = pixels.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8};
+    expect_untouched(image, reason);
+  }
+  void expect_untouched(const ImageView& image, Reason reason) {
+    UnlimitedBudget budget;
+    const Correction answer = localizer_.correct(image, prior_, budget);
+    EXPECT_FALSE(answer.corrected);
+    EXPECT_EQ(answer.reason, reason) << name_of(answer.reason);
+    EXPECT_TRUE(answer.X_WC.isApprox(prior_.X_WC, 0.0));
+    EXPECT_TRUE(answer.covariance.isApprox(prior_.covariance, 0.0));
+  }
+
+  world::Map map_;
+  geometry::Camera camera_;
+  Localizer localizer_;
+  Prior prior_;
+};
+
+TEST_F(LocalizerFault, BlackSaturatedAndFeaturelessImagesAreNamed) {
+  std::vector<std::uint8_t> pixels(320 * 240, 3);
+  expect_untouched(pixels, Reason::kTooDark);
+  std::fill(pixels.begin(), pixels.end(), std::uint8_t{255});
+  expect_untouched(pixels, Reason::kTooBright);
+  std::fill(pixels.begin(), pixels.end(), std::uint8_t{120});
+  expect_untouched(pixels, Reason::kTooFewEdges);
+}
+
+TEST_F(LocalizerFault, AHandBeforeTheCameraIsNotAPose) {
+  Picture picture(map_, prior_.X_WC, camera_, 1.5, 5);
+  for (std::size_t y = 0; y < 240; ++y)
+    for (std::size_t x = 0; x < 320; ++x)
+      if (y > 20 || x > 60) picture.pixels[y * 320 + x] = static_cast<std::uint8_t>(140 + (x + y) / 40);
+  UnlimitedBudget budget;
+  const Correction answer = localizer_.correct(picture.view(), prior_, budget);
+  EXPECT_FALSE(answer.corrected);
+  EXPECT_TRUE(answer.reason == Reason::kTooFewEdges || answer.reason == Reason::kUnexplained ||
+              answer.reason == Reason::kTooFewMatches)
+      << name_of(answer.reason);
+  EXPECT_TRUE(answer.X_WC.isApprox(prior_.X_WC, 0.0));
+}
+
+TEST_F(LocalizerFault, MotionBlurEitherCorrectsRightlyOrNotAtAll) {
+  Picture picture(map_, prior_.X_WC, camera_, 1.5, 6);
+  std::vector<std::uint8_t> blurred = picture.pixels;
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      int sum = 0;
+      for (int k = -25; k <= 25; ++k)
+        sum += picture.pixels[static_cast<std::size_t>(y * 320 + std::clamp(x + k, 0, 319))];
+      blurred[static_cast<std::size_t>(y * 320 + x)] = static_cast<std::uint8_t>(sum / 51);
+    }
+  }
+  const ImageView image{.data = blurred.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8};
+  UnlimitedBudget budget;
+  const Correction answer = localizer_.correct(image, prior_, budget);
+  EXPECT_LT(error_of(prior_.X_WC, answer.X_WC).position_m, 0.03);
+  EXPECT_NE(answer.corrected, answer.reason != Reason::kNone);
+}
+
+TEST_F(LocalizerFault, AnotherSizeAnotherFormatAndNoImageAreNamed) {
+  const std::vector<std::uint8_t> pixels(640 * 480 * 3, 100);
+  expect_untouched({.data = pixels.data(), .width_px = 300, .height_px = 240, .stride_bytes = 300, .format = PixelFormat::kGrey8},
+                   Reason::kWrongSize);
+  expect_untouched({.data = pixels.data(), .width_px = 320, .height_px = 240, .stride_bytes = 960, .format = PixelFormat::kBgr24},
+                   Reason::kWrongSize);
+  expect_untouched(ImageView{}, Reason::kWrongSize);
+}
+
+TEST_F(LocalizerFault, AMapOfAnotherRoomIsNotBelieved) {
+  const Picture picture(map_, in_small_room(1.6, 2.4, 2.2), camera_, 1.5, 7);
+  RandomNumbers random(14);
+  LocalizerParameters parameters;
+  parameters.starts_per_image = 0;
+  Localizer localizer(map_, camera_, parameters);
+  int images = 0;
+  const Correction answer =
+      answer_of(localizer, picture.view(), prior_at(prior_.X_WC, PriorSigmas::floor()), images);
+  EXPECT_FALSE(answer.corrected);
+}
+
+TEST_F(LocalizerFault, NoBudgetIsNoAnswer) {
+  class Nothing final : public WorkBudget {
+   public:
+    bool grant() override { return false; }
+  } nothing;
+  const Picture picture(map_, prior_.X_WC, camera_, 1.5, 8);
+  const Correction answer = localizer_.correct(picture.view(), prior_, nothing);
+  EXPECT_EQ(answer.reason, Reason::kNoBudget);
+  EXPECT_TRUE(answer.X_WC.isApprox(prior_.X_WC, 0.0));
+}
+
+TEST_F(LocalizerFault, APriorThatIsNoneIsRefused) {
+  const Picture picture(map_, prior_.X_WC, camera_, 1.5, 9);
+  UnlimitedBudget budget;
+  Prior broken = prior_;
+  broken.covariance.setZero();
+  EXPECT_FALSE(localizer_.correct(picture.view(), broken, budget).corrected);
+  broken = prior_;
+  broken.X_WC.translation().x() = std::nan("");
+  EXPECT_FALSE(localizer_.correct(picture.view(), broken, budget).corrected);
+}
+
+TEST(LocalizerEmptyFault, AMapWithoutEdgesIsNamed) {
+  const world::Map map;
+  Localizer localizer(map, room_camera(), {});
+  const std::vector<std::uint8_t> pixels(320 * 240, 100);
+  UnlimitedBudget budget;
+  const Correction answer = localizer.correct(
+      {.data = pixels.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
+      prior_at(Pose::Identity(), kTracking), budget);
+  EXPECT_EQ(answer.reason, Reason::kNoMap);
+}
+
+TEST(LocalizerAlloc, CorrectingAndSearchingAllocateNothing) {
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "not under a sanitizer";
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, camera, 1.5, 10);
+  UnlimitedBudget budget;
+  const Prior narrow = prior_at(truth, kTracking);
+  const Prior wide = prior_at(truth, PriorSigmas::floor());
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 3; ++i) localizer.correct(picture.view(), narrow, budget);
+  for (int i = 0; i < 60; ++i) {
+    if (localizer.correct(picture.view(), wide, budget).reason != Reason::kSearching) break;
+    localizer.carried(Pose::Identity());
+  }
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace cgsr::localization

@@ -1,0 +1,113 @@
+#include "pipeline/localization/pose_tracker.h"
+
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/localization/random_numbers.h"
+#include "tests/localization/small_room.h"
+
+namespace cgsr::localization {
+namespace {
+
+using geometry::Pose;
+using testing::in_small_room;
+using testing::Picture;
+using testing::small_room;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+class Tracking : public ::testing::Test {
+ protected:
+  Tracking()
+      : map_(small_room()),
+        camera_(geometry::Camera{}.scaled_to(320, 240)),
+        X_RC_(in_small_room(0.0, 0.0, 0.0)),
+        localizer_(map_, camera_, {}),
+        tracker_(localizer_, X_RC_, {}) {}
+
+  static constexpr PriorSigmas kKnown{.x_m = 0.02, .y_m = 0.02, .z_m = 0.01, .heading_rad = 0.01, .tilt_rad = 0.005};
+
+  const TrackedPose& see(const Pose& X_WR) {
+    const Picture picture(map_, X_WR * X_RC_, camera_, 1.5, ++number_);
+    return tracker_.see(picture.view(), budget_);
+  }
+  const TrackedPose& see_black() {
+    const std::vector<std::uint8_t> black(320 * 240, 2);
+    return tracker_.see({.data = black.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
+                        budget_);
+  }
+
+  world::Map map_;
+  geometry::Camera camera_;
+  Pose X_RC_;
+  Localizer localizer_;
+  PoseTracker tracker_;
+  UnlimitedBudget budget_;
+  std::uint32_t number_ = 0;
+};
+
+// Odometry that turns and drives 5 % too little: the pose stays with the robot.
+TEST_F(Tracking, FollowsARobotThatSlips) {
+  Pose X_WR = geometry::pose_on_floor(0.8, 1.5, 0.0);
+  tracker_.start(prior_at(X_WR * X_RC_, kKnown));
+  for (int i = 0; i < 25; ++i) {
+    const TrackedPose& now = see(X_WR);
+    EXPECT_EQ(now.state, TrackState::kTracking) << name_of(now.correction.reason);
+    const geometry::Vector6d error = geometry::step_between(X_WR * X_RC_, now.X_WC);
+    EXPECT_LT(error.head<3>().norm(), 0.02) << i;
+    EXPECT_LT(error.tail<3>().norm(), 0.5 * kDegree) << i;
+    X_WR = X_WR * geometry::pose_on_floor(0.03, 0.0, 0.02);
+    tracker_.moved(geometry::pose_on_floor(0.0285, 0.0, 0.019));
+  }
+}
+
+TEST_F(Tracking, BlackImagesLeaveThePredictionAndAreSaidToBeALoss) {
+  const Pose X_WR = geometry::pose_on_floor(1.0, 1.6, 0.2);
+  tracker_.start(prior_at(X_WR * X_RC_, kKnown));
+  ASSERT_EQ(see(X_WR).state, TrackState::kTracking);
+  for (int i = 1; i < 40; ++i) {
+    tracker_.moved(Pose::Identity());
+    const Pose predicted = tracker_.now().X_WC;
+    const TrackedPose& now = see_black();
+    EXPECT_EQ(now.correction.reason, Reason::kTooDark);
+    EXPECT_LT(geometry::step_between(predicted, now.X_WC).norm(), 0.02);
+    EXPECT_EQ(now.state, i < PoseTrackerParameters{}.lost_after ? TrackState::kTracking : TrackState::kLost) << i;
+  }
+  // The light comes back: found again, and told once.
+  bool recovered = false;
+  for (int i = 0; i < 60 && !recovered; ++i) recovered = see(X_WR).state == TrackState::kRecovered;
+  EXPECT_TRUE(recovered);
+  EXPECT_EQ(see(X_WR).state, TrackState::kTracking);
+  EXPECT_LT(geometry::step_between(X_WR * X_RC_, tracker_.now().X_WC).head<3>().norm(), 0.02);
+}
+
+// The camera is carried away unseen by 20 cm and 6 degrees: the belief widens until the pose is found.
+TEST_F(Tracking, RecoversFromBeingCarriedAway) {
+  Pose X_WR = geometry::pose_on_floor(1.0, 1.6, 0.2);
+  tracker_.start(prior_at(X_WR * X_RC_, kKnown));
+  ASSERT_EQ(see(X_WR).state, TrackState::kTracking);
+  X_WR = geometry::pose_on_floor(1.15, 1.48, 0.2 + 6.0 * kDegree);
+  bool recovered = false;
+  for (int i = 0; i < 250 && !recovered; ++i) {
+    tracker_.moved(Pose::Identity());
+    const TrackedPose& now = see(X_WR);
+    recovered = now.correction.corrected;
+  }
+  ASSERT_TRUE(recovered);
+  EXPECT_LT(geometry::step_between(X_WR * X_RC_, tracker_.now().X_WC).head<3>().norm(), 0.03);
+}
+
+TEST_F(Tracking, TheBeliefGrowsAlongTheWay) {
+  tracker_.start(prior_at(X_RC_, {.x_m = 0.001, .y_m = 0.001, .z_m = 0.01, .heading_rad = 0.001, .tilt_rad = 0.005}));
+  for (int i = 0; i < 100; ++i) tracker_.moved(geometry::pose_on_floor(0.02, 0.0, 0.0));
+  const geometry::Matrix6d P = tracker_.now().covariance;
+  EXPECT_NEAR(tracker_.now().X_WC.translation().x(), 2.0, 1e-9);
+  EXPECT_NEAR(std::sqrt(P(0, 0)), 0.05 * 2.0, 0.01) << "5 % of the way, whatever the steps";
+  EXPECT_GT(P(1, 1), P(0, 0)) << "the direction's error swings the place to the side";
+  EXPECT_LT((P - P.transpose()).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace cgsr::localization
