@@ -19,8 +19,13 @@ constexpr double kLeastDepth_m = 0.1;
 
 }  // namespace
 
-Belief::Belief(const Prior& given)
-    : prior(given), information(given.covariance.ldlt().solve(geometry::Matrix6d::Identity())) {}
+Belief::Belief(const Prior& given) : prior(given), information(geometry::Matrix6d::Zero()) {
+  if (!given.X_WC.matrix().allFinite() || !given.covariance.allFinite()) return;
+  const Eigen::LLT<geometry::Matrix6d> factor(given.covariance);
+  if (factor.info() != Eigen::Success) return;
+  information = factor.solve(geometry::Matrix6d::Identity());
+  valid = information.allFinite();
+}
 
 Alternation::Alternation(const world::Map& map, const LocalizerParameters& parameters, render::Expectation& expectation,
                          const geometry::Camera& camera, std::size_t most_perceived)

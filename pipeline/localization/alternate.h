@@ -20,6 +20,7 @@ struct Belief {
 
   Prior prior;
   geometry::Matrix6d information;
+  bool valid = false;  ///< finite, and the covariance positive definite.
 };
 
 /// A pose that expectation and maximisation settled on.
@@ -28,16 +29,17 @@ struct Estimate {
   Solution solution;
   int expected = 0;
   int matches = 0;
-  float explained = 0.0F;  ///< share of the expected visible length found, each edge by how sure it is to be perceived, near matches more.
+  float explained =
+      0.0F;  ///< share of the expected visible length found, each edge by how sure it is to be perceived, near matches more.
   float prior_chi2 = 0.0F;
   int rounds = 0;
 };
 
 struct AlternateOptions {
   int rounds = 6;
-  float radius_px = 24.0F;   ///< of the first round.
-  bool look_first = true;    ///< false: the pieces of the last look are good enough.
-  bool look_again = true;    ///< when the pose moved far.
+  float radius_px = 24.0F;      ///< of the first round.
+  bool look_first = true;       ///< false: the pieces of the last look are good enough.
+  bool look_again = true;       ///< when the pose moved far.
   bool whole_matching = false;  ///< radius stays (the paper's).
 };
 

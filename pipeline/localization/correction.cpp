@@ -46,6 +46,8 @@ std::string_view name_of(Reason reason) {
       return "uncertain";
     case Reason::kResidual:
       return "residual";
+    case Reason::kBadPrior:
+      return "bad_prior";
     case Reason::kNoBudget:
       return "no_budget";
   }

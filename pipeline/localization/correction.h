@@ -50,6 +50,7 @@ enum class Reason : std::uint8_t {
   kFarFromPrior,
   kUncertain,  ///< the matches leave a direction open.
   kResidual,   ///< the matches do not fit together.
+  kBadPrior,   ///< not finite, or its covariance is none.
   kNoBudget,   ///< not even one look was granted.
 };
 

@@ -21,7 +21,7 @@ class DirectionField {
   [[nodiscard]] float score(std::span<const ProjectedPiece> expected) const;
 
  private:
-  static constexpr int kBins = 16;   // over the whole turn
+  static constexpr int kBins = 16;  // over the whole turn
   static constexpr int kCell_px = 4;
   [[nodiscard]] std::uint8_t* plane(int bin) { return distance_.data() + static_cast<std::size_t>(bin) * plane_size_; }
   void spread(std::uint8_t* plane) const;

@@ -136,10 +136,10 @@ std::vector<EdgeSides> sides_of(const world::Map& map) {
     const Eigen::Vector3f normal = map.surfaces[edge.sides[own]].normal;
     const Eigen::Vector3f left = normal.cross(up).normalized();
     sides.inward[own] = inward_of(map, edge, edge.sides[own], own == 0 ? left : Eigen::Vector3f(-left));
-    sides.inward[other] = inward_of(map, edge, edge.sides[other],
-                                    edge.sides[other] == edge.surfaces[other]
-                                        ? Eigen::Vector3f(-sides.inward[own])
-                                        : Eigen::Vector3f(normal - sides.inward[own]));
+    sides.inward[other] =
+        inward_of(map, edge, edge.sides[other],
+                  edge.sides[other] == edge.surfaces[other] ? Eigen::Vector3f(-sides.inward[own])
+                                                            : Eigen::Vector3f(normal - sides.inward[own]));
   }
   return result;
 }
@@ -228,11 +228,8 @@ void EveryEdge::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
     const Eigen::Vector3f c1 = R_CW * (map_->vertices[edge.vertices[1]] - t);
     const auto part = clipped(c0, c1, camera, 0.0F);
     if (!part) continue;
-    pieces.push_back({.edge = static_cast<std::uint32_t>(i),
-                      .from = part->from,
-                      .to = part->to,
-                      .p0 = part->p0,
-                      .p1 = part->p1});
+    pieces.push_back(
+        {.edge = static_cast<std::uint32_t>(i), .from = part->from, .to = part->to, .p0 = part->p0, .p1 = part->p1});
   }
 }
 

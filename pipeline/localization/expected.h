@@ -15,10 +15,11 @@ namespace cgsr::localization {
 
 /// What is expected beside an edge of the map, worked out once: where its two surfaces lie and which of them is brighter.
 struct EdgeSides {
-  Eigen::Vector3f inward[2] = {Eigen::Vector3f::Zero(),
-                               Eigen::Vector3f::Zero()};  ///< along the surface, away from the edge; unit; zero: no surface.
-  std::int8_t brighter = -1;                              ///< index of the surely brighter side; -1: not known.
-  float weight = 1.0F;                                    ///< how sure it is to be perceived, 0..1.
+  Eigen::Vector3f inward[2] = {
+      Eigen::Vector3f::Zero(),
+      Eigen::Vector3f::Zero()};  ///< along the surface, away from the edge; unit; zero: no surface.
+  std::int8_t brighter = -1;     ///< index of the surely brighter side; -1: not known.
+  float weight = 1.0F;           ///< how sure it is to be perceived, 0..1.
 };
 
 /// EdgeSides of every edge of a map.
@@ -41,7 +42,8 @@ struct ProjectedPiece {
   float depth1_m = 0.0F;
   float from = 0.0F;  ///< which part of the piece is inside of the image, in space.
   float to = 1.0F;
-  std::int8_t bright_side = 0;  ///< +1: the brighter side lies along (-y, x) of direction; -1: against it; 0: not known.
+  std::int8_t bright_side =
+      0;  ///< +1: the brighter side lies along (-y, x) of direction; -1: against it; 0: not known.
   float weight = 1.0F;
 };
 

@@ -39,8 +39,7 @@ struct Localizer::State {
       : map(&given_map),
         parameters(fitted(given, given_map)),
         perception(camera),
-        expectation(given_expectation ? std::move(given_expectation)
-                                      : usual(given_map, parameters)),
+        expectation(given_expectation ? std::move(given_expectation) : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
         search(parameters, alternation, perception.camera()) {}
 
@@ -100,11 +99,10 @@ Correction Localizer::State::from_one_start(const Belief& belief, double widest_
   Correction answer;
   AlternateOptions options;
   options.rounds = parameters.iterations;
-  options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * widest_px + 2.0, parameters.match_radius_least_px,
-                                                    parameters.match_radius_px));
+  options.radius_px = static_cast<float>(
+      std::clamp(kReachOfPrior * widest_px + 2.0, parameters.match_radius_least_px, parameters.match_radius_px));
   options.look_first = false;  // drawn already, for the prior's width
-  const Estimate estimate =
-      alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
+  const Estimate estimate = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
   if (estimate.rounds == 0) {
     answer.reason = Reason::kNoBudget;
     return answer;
@@ -131,7 +129,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   const Reason seen = s.perception.perceive(image, mask);
   if (seen != Reason::kNone) return refused(seen);
   const Belief belief(prior);
-  if (!belief.information.allFinite() || !prior.X_WC.matrix().allFinite()) return refused(Reason::kFarFromPrior);
+  if (!belief.valid) return refused(Reason::kBadPrior);
 
   if (!s.search.running()) {
     if (!budget.grant()) return refused(Reason::kNoBudget);

@@ -7,8 +7,8 @@
 namespace cgsr::localization {
 namespace {
 
-constexpr float kMostTaken = 0.3F;         // share of an overlap that a more confident match may hold already
-constexpr float kSameLine_px = 3.0F;       // pieces of one broken edge lie along one line
+constexpr float kMostTaken = 0.3F;          // share of an overlap that a more confident match may hold already
+constexpr float kSameLine_px = 3.0F;        // pieces of one broken edge lie along one line
 constexpr std::size_t kCandidatesEach = 6;  // per expected edge, on average
 
 }  // namespace
@@ -123,8 +123,7 @@ std::span<const Match> Matcher::match(std::span<const ProjectedPiece> expected, 
   candidates_.clear();
   matches_.clear();
   const std::size_t count = std::min(expected.size(), of_expected_.capacity());
-  for (std::size_t i = 0; i < count; ++i)
-    find_candidates(static_cast<std::uint32_t>(i), expected[i], perceived, rules);
+  for (std::size_t i = 0; i < count; ++i) find_candidates(static_cast<std::uint32_t>(i), expected[i], perceived, rules);
 
   of_expected_.resize(count);
   for (Taken& taken : of_expected_) taken.count = 0;
@@ -147,8 +146,7 @@ std::span<const Match> Matcher::match(std::span<const ProjectedPiece> expected, 
     const bool along = expected[match.projected].direction.dot(perceived.edges()[match.perceived].direction) > 0.0F;
     const float line = (along ? 0.5F : -0.5F) * (match.d1_px + match.d2_px);
     const float overlap = match.overlap_px();
-    if (mine.count > 0 && std::abs(line - line_of_expected_[match.projected]) > kSameLine_px)
-      continue;
+    if (mine.count > 0 && std::abs(line - line_of_expected_[match.projected]) > kSameLine_px) continue;
     if (taken_of(mine, match.from_px, match.to_px) > kMostTaken * overlap) continue;
     if (taken_of(its, match.from_on_perceived_px, match.to_on_perceived_px) > kMostTaken * overlap) continue;
     if (mine.count == 0) line_of_expected_[match.projected] = line;

@@ -11,11 +11,12 @@ namespace cgsr::localization {
 
 /// What makes an expected and a perceived edge one (4.1, Fig. 4.3), each with its own confidence.
 struct MatchingRules {
-  float radius_px = 24.0F;   ///< largest effective distance.
-  float angle_rad = 0.21F;   ///< largest difference of direction.
-  float overlap_px = 5.0F;   ///< shortest overlap ...
+  float radius_px = 24.0F;     ///< largest effective distance.
+  float angle_rad = 0.21F;     ///< largest difference of direction.
+  float overlap_px = 5.0F;     ///< shortest overlap ...
   float overlap_share = 0.3F;  ///< ... and its least share of the shorter of the two.
-  float unknown_side = 0.8F;  ///< confidence of the appearance where nothing is expected of it; where it contradicts the match is discarded.
+  float unknown_side =
+      0.8F;  ///< confidence of the appearance where nothing is expected of it; where it contradicts the match is discarded.
 };
 
 /// An expected edge that found a perceived one, along their overlap.
@@ -26,7 +27,8 @@ struct Match {
   float to_px = 0.0F;
   float from_on_perceived_px = 0.0F;  ///< the same along the perceived edge, from its middle.
   float to_on_perceived_px = 0.0F;
-  float d1_px = 0.0F;  ///< from the perceived line to the expected edge at both ends of the overlap; positive along the line's normal.
+  float d1_px =
+      0.0F;  ///< from the perceived line to the expected edge at both ends of the overlap; positive along the line's normal.
   float d2_px = 0.0F;
   float confidence = 0.0F;
 

@@ -82,8 +82,7 @@ Reason Perception::perceive(const ImageView& image, const std::uint8_t* mask) {
   table_.clear();
   table_.finish();
   if (!make_grey(image)) return Reason::kWrongSize;
-  for (const imaging::Segment& segment :
-       finder_.find(plane_, working_.width_px, working_.height_px, stride_, mask)) {
+  for (const imaging::Segment& segment : finder_.find(plane_, working_.width_px, working_.height_px, stride_, mask)) {
     const Eigen::Vector2f p0 = working_.undistorted(segment.p0.cast<double>()).cast<float>();
     const Eigen::Vector2f p1 = working_.undistorted(segment.p1.cast<double>()).cast<float>();
     const float length = (p1 - p0).norm();

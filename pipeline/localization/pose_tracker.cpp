@@ -85,7 +85,8 @@ void PoseTracker::moved(const Pose& X_R0R1) {
 // A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along.
 void PoseTracker::flatten() {
   const Pose X_WR = now_.X_WC * X_RC_.inverse();
-  const Pose level = geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
+  const Pose level =
+      geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
   Pose tilt = Pose::Identity();
   tilt.linear() = Eigen::AngleAxisd(pitch_rad_, Eigen::Vector3d::UnitY()).toRotationMatrix();
   now_.X_WC = level * tilt * X_RC_;
@@ -114,8 +115,7 @@ void PoseTracker::widen() {
 
 const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask) {
   if (parameters_.floor) flatten();
-  now_.correction =
-      localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = now_.covariance}, budget, mask);
+  now_.correction = localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = now_.covariance}, budget, mask);
   if (now_.correction.corrected) {
     now_.X_WC = now_.correction.X_WC;
     now_.covariance = now_.correction.covariance;

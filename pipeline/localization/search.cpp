@@ -193,8 +193,8 @@ bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceive
 
 bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   if (estimates_.empty()) return true;
-  const AlternateOptions options{
-      .rounds = kNeighbourRounds, .radius_px = 0.5F * static_cast<float>(parameters_.match_radius_px)};
+  const AlternateOptions options{.rounds = kNeighbourRounds,
+                                 .radius_px = 0.5F * static_cast<float>(parameters_.match_radius_px)};
   while (walk_ < parameters_.walks) {
     if (next_neighbour_ == 0) {
       X_WC_walk_ = estimates_.front().solution.X_WC;
@@ -207,8 +207,7 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
       for (int i = 0; i < 6; ++i) {
         if (shape_.motion_px[i] < kNeighbourSpread_px) continue;
         const double most = std::min(1.5, parameters_.start_spacing_px / shape_.motion_px[i]);
-        const std::uint32_t number =
-            static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
+        const std::uint32_t number = static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
         step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
       }
       WatchedBudget watched(budget);

@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-
 namespace cgsr::localization {
 
 /// A perceived straight edge with the lens taken out: pixels of the working image, as a pinhole would show them.

@@ -19,8 +19,12 @@ constexpr double kSettled = 1e-6;  // m and rad
 // Everything of a pose and a camera that each distance needs.
 struct View {
   View(const Pose& X_WC, const geometry::Camera& camera)
-      : R_CW(X_WC.linear().transpose()), p_WC(X_WC.translation()), fx(camera.fx_px), fy(camera.fy_px),
-        cx(camera.cx_px), cy(camera.cy_px) {}
+      : R_CW(X_WC.linear().transpose()),
+        p_WC(X_WC.translation()),
+        fx(camera.fx_px),
+        fy(camera.fy_px),
+        cx(camera.cx_px),
+        cy(camera.cy_px) {}
 
   bool distance(const LineDistance& line, double& distance_px) const {
     const Eigen::Vector3d p_C = R_CW * (line.p_W - p_WC);

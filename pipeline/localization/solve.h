@@ -19,9 +19,11 @@ struct LineDistance {
 };
 
 struct SolverOptions {
-  bool paper = false;  ///< Eq. 4.4 and 4.5: numeric Jacobian, lambda = 1, units proportional to the variance, one full step.
-  int steps = 4;       ///< of Levenberg and Marquardt.
-  double robust = 2.0;  ///< Cauchy's constant in sigmas: further out a distance counts less and less; 0: all count alike.
+  bool paper =
+      false;      ///< Eq. 4.4 and 4.5: numeric Jacobian, lambda = 1, units proportional to the variance, one full step.
+  int steps = 4;  ///< of Levenberg and Marquardt.
+  double robust =
+      2.0;  ///< Cauchy's constant in sigmas: further out a distance counts less and less; 0: all count alike.
 };
 
 struct Solution {
@@ -29,8 +31,8 @@ struct Solution {
   geometry::Pose X_WC = geometry::Pose::Identity();
   geometry::Matrix6d data_information = geometry::Matrix6d::Zero();  ///< of the distances alone.
   geometry::Matrix6d information = geometry::Matrix6d::Zero();       ///< with the prior.
-  double cost = 0.0;    ///< what was minimised, at X_WC.
-  double rms_px = 0.0;  ///< of the distances, robust weights counted.
+  double cost = 0.0;                                                 ///< what was minimised, at X_WC.
+  double rms_px = 0.0;                                               ///< of the distances, robust weights counted.
   int steps = 0;
 };
 

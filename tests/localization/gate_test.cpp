@@ -1,7 +1,7 @@
 #include "pipeline/localization/gate.h"
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 namespace cgsr::localization {
 namespace {

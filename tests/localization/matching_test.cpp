@@ -44,7 +44,8 @@ class Matching : public ::testing::Test {
     // The table sorts: answer in the numbers of `edges`.
     for (Match& one : result) {
       for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (edges[i].middle == table.edges()[one.perceived].middle && edges[i].direction == table.edges()[one.perceived].direction)
+        if (edges[i].middle == table.edges()[one.perceived].middle &&
+            edges[i].direction == table.edges()[one.perceived].direction)
           one.perceived = static_cast<std::uint32_t>(i);
       }
     }
@@ -93,9 +94,9 @@ TEST_F(Matching, SidesKeepTheTwoBordersOfATapeApart) {
 }
 
 TEST_F(Matching, AnEdgeInPiecesIsMatchedWithEachOfThem) {
-  const auto found = match({expected(50, 100, 250, 100)},
-                           {perceived(52, 101, 110, 101), perceived(118, 101, 180, 101), perceived(186, 101, 249, 101),
-                            perceived(60, 110, 240, 110)});
+  const auto found =
+      match({expected(50, 100, 250, 100)}, {perceived(52, 101, 110, 101), perceived(118, 101, 180, 101),
+                                            perceived(186, 101, 249, 101), perceived(60, 110, 240, 110)});
   EXPECT_EQ(std::count_if(found.begin(), found.end(), [](const Match& one) { return one.perceived < 3; }), 3)
       << "broken, and the whole line 10 px away must not take its place";
   EXPECT_EQ(found.size(), 3U);

@@ -35,8 +35,9 @@ class Tracking : public ::testing::Test {
   }
   const TrackedPose& see_black() {
     const std::vector<std::uint8_t> black(320 * 240, 2);
-    return tracker_.see({.data = black.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
-                        budget_);
+    return tracker_.see(
+        {.data = black.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
+        budget_);
   }
 
   world::Map map_;

@@ -12,7 +12,9 @@ class RandomNumbers {
  public:
   explicit RandomNumbers(std::uint32_t seed) : engine_(seed) {}
 
-  double uniform(double from, double to) { return from + (to - from) * (static_cast<double>(engine_()) / 4294967296.0); }
+  double uniform(double from, double to) {
+    return from + (to - from) * (static_cast<double>(engine_()) / 4294967296.0);
+  }
   double normal() {  // twelve uniforms: near enough
     double sum = -6.0;
     for (int i = 0; i < 12; ++i) sum += uniform(0.0, 1.0);

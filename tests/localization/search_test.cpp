@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "tests/localization/random_numbers.h"
 

@@ -68,13 +68,14 @@ void add_outline(world::Map& map, const std::vector<Face>& faces, std::uint32_t 
                            .kind = world::EdgeKind::kBorder});
     }
   }
-  for (std::size_t i = first; i < map.edges.size(); ++i) map.edges[i].contrast = contrast_between(map, map.edges[i].sides);
+  for (std::size_t i = first; i < map.edges.size(); ++i)
+    map.edges[i].contrast = contrast_between(map, map.edges[i].sides);
 }
 
 }  // namespace
 
-std::uint32_t MapBuilder::rectangle(const Vector3f& corner, const Vector3f& u, const Vector3f& v, std::uint32_t material,
-                                    std::uint32_t on) {
+std::uint32_t MapBuilder::rectangle(const Vector3f& corner, const Vector3f& u, const Vector3f& v,
+                                    std::uint32_t material, std::uint32_t on) {
   const auto n = static_cast<std::uint32_t>(map.vertices.size());
   map.vertices.insert(map.vertices.end(), {corner, corner + u, corner + u + v, corner + v});
   const std::array<std::uint32_t, 4> corners = {n, n + 1, n + 2, n + 3};
@@ -89,8 +90,8 @@ void MapBuilder::box(const Vector3f& corner, const Vector3f& size, std::uint32_t
     for (const auto& [x, y] : {std::pair{0.0F, 0.0F}, {1.0F, 0.0F}, {1.0F, 1.0F}, {0.0F, 1.0F}})
       map.vertices.emplace_back(corner + size.cwiseProduct(Vector3f(x, y, z)));
   std::vector<Face> faces;
-  for (const std::array<std::uint32_t, 4>& c : {std::array<std::uint32_t, 4>{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6},
-                                                 {3, 0, 4, 7}, {4, 5, 6, 7}}) {
+  for (const std::array<std::uint32_t, 4>& c :
+       {std::array<std::uint32_t, 4>{0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}, {4, 5, 6, 7}}) {
     Face face;
     for (std::size_t i = 0; i < 4; ++i) face.corners[i] = n + c[i];
     face.surface = add_face(map, face.corners, material);
@@ -182,7 +183,11 @@ Picture::Picture(const world::Map& map, const geometry::Pose& X_WC, const geomet
 }
 
 ImageView Picture::view() const {
-  return {.data = pixels.data(), .width_px = width_, .height_px = height_, .stride_bytes = width_, .format = PixelFormat::kGrey8};
+  return {.data = pixels.data(),
+          .width_px = width_,
+          .height_px = height_,
+          .stride_bytes = width_,
+          .format = PixelFormat::kGrey8};
 }
 
 }  // namespace cgsr::localization::testing

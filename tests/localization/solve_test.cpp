@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "tests/localization/random_numbers.h"
 
@@ -133,8 +133,7 @@ TEST(SolveGolden, ThePapersStepIsEquation45) {
   }
   const Vector6d p = -(J.transpose() * J + Matrix6d::Identity()).ldlt().solve(J.transpose() * F);
   const Pose expected = geometry::moved(prior.X_WC, p.cwiseProduct(unit));
-  const Solution found =
-      solve(lines, prior.X_WC, prior, prior.covariance.inverse(), small_camera(), {.paper = true});
+  const Solution found = solve(lines, prior.X_WC, prior, prior.covariance.inverse(), small_camera(), {.paper = true});
   ASSERT_TRUE(found.solved);
   EXPECT_LT(geometry::step_between(expected, found.X_WC).norm(), 1e-5);
 }
