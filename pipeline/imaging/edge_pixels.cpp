@@ -16,7 +16,7 @@ constexpr double kNoiseGain = 26.46;
 
 /// A parabola through three samples of a bell as wide as this blur leaves a sharp edge pulls its top to the pixel's centre; measured on
 /// rendered edges. Nothing at 0 and at half a pixel, where symmetry holds it.
-constexpr float kParabolaPull = 0.24F;
+constexpr float kParabolaPull = 0.18F;
 
 __m128i load_words(const std::int16_t* from) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));

@@ -68,6 +68,8 @@ class EdgeDetector {
   /// Which pixel belongs to which edge pixel: its number + 1, 0 is none. Rows of map_width() entries, tight.
   [[nodiscard]] const std::uint32_t* map() const { return map_.data(); }
   [[nodiscard]] int map_width() const { return width_; }
+  [[nodiscard]] int width_px() const { return width_; }
+  [[nodiscard]] int height_px() const { return height_; }
 
   /// Standard deviation of the last image's noise, grey levels.
   [[nodiscard]] double noise() const { return noise_; }
