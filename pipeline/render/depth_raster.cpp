@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pipeline/render/clip.h"
-
 namespace cgsr::render {
 namespace {
 
@@ -99,13 +97,7 @@ const DepthRaster::Corner& DepthRaster::corner(std::uint32_t vertex) {
   Corner& found = corners_[vertex];
   if (found.look == look_) return found;
   found.look = look_;
-  const Eigen::Vector3f p = map_.vertices[vertex] - p_WC_;
-  found.p = to_cells_ * p;
-  found.w = 0.0F;
-  if (found.p.z() >= static_cast<float>(parameters_.near_m)) {
-    found.w = 1.0F / found.p.z();
-    found.at = found.p.head<2>() * found.w;
-  }
+  found.set(to_cells_ * (map_.vertices[vertex] - p_WC_), static_cast<float>(parameters_.near_m));
   return found;
 }
 
@@ -168,50 +160,12 @@ void DepthRaster::draw_clipped(const std::array<const Corner*, 3>& corners, cons
 
 void DepthRaster::look_at_edge(std::uint32_t name) {
   const world::Edge& edge = map_.edges[name];
-  const Corner& a = corner(edge.vertices[0]);
-  const Corner& b = corner(edge.vertices[1]);
-  if (a.w == 0.0F && b.w == 0.0F) return;
-
-  // The near plane, in three dimensions: t0 and t1 are places on the edge.
-  float t0 = 0.0F;
-  float t1 = 1.0F;
+  Line line;
   const auto near = static_cast<float>(parameters_.near_m);
-  Eigen::Vector2f from = a.at;
-  Eigen::Vector2f to = b.at;
-  float w0 = a.w;
-  float w1 = b.w;
-  if (a.w == 0.0F || b.w == 0.0F) {
-    const float t = (near - a.p.z()) / (b.p.z() - a.p.z());
-    const Eigen::Vector2f at = (a.p + t * (b.p - a.p)).head<2>() / near;
-    if (a.w == 0.0F) {
-      t0 = t;
-      from = at;
-      w0 = 1.0F / near;
-    } else {
-      t1 = t;
-      to = at;
-      w1 = 1.0F / near;
-    }
-  }
-
-  // The borders of the view, in the image.
-  float s0 = 0.0F;
-  float s1 = 1.0F;
-  Eigen::Vector2f along = to - from;
-  if (!clip(from.x() + 0.5F, along.x(), s0, s1) ||
-      !clip(static_cast<float>(view_->width) - 0.5F - from.x(), -along.x(), s0, s1) ||
-      !clip(from.y() + 0.5F, along.y(), s0, s1) ||
-      !clip(static_cast<float>(view_->height) - 0.5F - from.y(), -along.y(), s0, s1)) {
-    return;
-  }
-  // What is seen of it becomes the line; places on it go back to places on the edge by t' / Z' = s w1 (both are linear in the image).
-  const float w_from = w0 + s0 * (w1 - w0);
-  const float w_to = w0 + s1 * (w1 - w0);
-  const float t_from = t0 + (t1 - t0) * (s0 * w1 / w_from);
-  const float t_to = t0 + (t1 - t0) * (s1 * w1 / w_to);
-  // An edge may lie behind by the tolerance: a hair nearer, it need not be asked about at each sample.
-  const float nearer = 1.0F / (1.0F - static_cast<float>(parameters_.tolerance));
-  const Line line{from + s0 * along, (s1 - s0) * along, w_from * nearer, (w_to - w_from) * nearer, edge.surfaces};
+  if (!line.set(corner(edge.vertices[0]), corner(edge.vertices[1]), *view_, near)) return;
+  line.own = edge.surfaces;
+  // An edge may lie behind by the tolerance: held a hair nearer, it need not be asked about at each sample.
+  line.nearer = 1.0F / (1.0F - static_cast<float>(parameters_.tolerance));
   const float length = line.along.norm();
   if (length < 1e-3F) return;
 
@@ -220,17 +174,8 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
   const float spacing = 1.0F / static_cast<float>(samples);
   const float precision = std::min(static_cast<float>(parameters_.refine_cells) / length, 0.5F * spacing);
 
-  const auto to_px = [&](float s) {
-    const Eigen::Vector2f cell = line.from + s * line.along;
-    return Eigen::Vector2f(
-        static_cast<float>(view_->left_px) + (cell.x() + 0.5F) / static_cast<float>(view_->cells_per_px_x()),
-        static_cast<float>(view_->top_px) + (cell.y() + 0.5F) / static_cast<float>(view_->cells_per_px_y()));
-  };
-  const auto to_t = [&](float s) {
-    return std::clamp(t_from + (t_to - t_from) * (s * w_to / (w_from + s * (w_to - w_from))), 0.0F, 1.0F);
-  };
   const auto keep = [&](float begin, float end) {
-    VisiblePiece piece{name, to_t(begin), to_t(end), to_px(begin), to_px(end)};
+    const VisiblePiece piece = line.piece(name, begin, end, *view_);
     const float long_px = (piece.p1 - piece.p0).norm();
     if (long_px < static_cast<float>(parameters_.piece_least_px) || found_.size() == found_.capacity()) return;
     if (piece.from < piece.to) found_.push_back(piece);
@@ -268,7 +213,7 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
 bool DepthRaster::visible(const Line& line, float s) const {
   const float u = line.from.x() + s * line.along.x();
   const float v = line.from.y() + s * line.along.y();
-  const float w = line.w0 + s * line.dw;
+  const float w = (line.w0 + s * line.dw) * line.nearer;
   const int x = std::clamp(static_cast<int>(u), 0, view_->width - 2);
   const int y = std::clamp(static_cast<int>(v), 0, view_->height - 2);
   const auto around = buffer_.names(x, y);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/render/depth_buffer.h"
+#include "pipeline/render/edge_line.h"
 #include "pipeline/render/expectation.h"
 #include "pipeline/render/raster_parameters.h"
 #include "pipeline/render/sphere_groups.h"
@@ -36,19 +37,12 @@ class DepthRaster : public Expectation {
   void draw(const geometry::Pose& X_WC, const geometry::Camera& camera);
 
  private:
-  struct Corner {
-    Eigen::Vector3f p;   ///< homogeneous cells: (u Z, v Z, Z).
-    Eigen::Vector2f at;  ///< cells; unset behind the near plane.
-    float w = 0.0F;      ///< 1/Z; 0: behind the near plane.
-    std::uint32_t look = 0;
+  struct Corner : ViewedCorner {
+    std::uint32_t look = 0;  ///< by which it was set.
   };
-  /// An edge on the raster: places s in [0, 1] along it are places in the image.
-  struct Line {
-    Eigen::Vector2f from;
-    Eigen::Vector2f along;
-    float w0 = 0.0F;
-    float dw = 0.0F;
+  struct Line : EdgeLine {
     std::array<std::uint32_t, 2> own{};  ///< surfaces that cannot hide it.
+    float nearer = 1.0F;                 ///< factor on its 1/Z.
   };
 
   const Corner& corner(std::uint32_t vertex);
