@@ -28,6 +28,16 @@ class Context : public OsmesaContext {
 
   [[nodiscard]] std::span<const std::uint32_t> pixels() const override { return pixels_; }
 
+  [[nodiscard]] std::span<const std::uint32_t> depths() const override {
+    GLint width = 0;
+    GLint height = 0;
+    GLint bytes = 0;
+    void* buffer = nullptr;
+    if (OSMesaGetDepthBuffer(context_, &width, &height, &bytes, &buffer) == GL_FALSE) return {};
+    if (width != width_ || height != height_ || bytes != 4) return {};
+    return {static_cast<const std::uint32_t*>(buffer), pixels_.size()};
+  }
+
  private:
   OSMesaContext context_;
   int width_;

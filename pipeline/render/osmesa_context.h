@@ -25,6 +25,10 @@ class OsmesaContext {
   /// What was drawn, four bytes a pixel as R | G << 8 | B << 16 | A << 24, the top row first; whole after glFinish(). Never copied.
   [[nodiscard]] virtual std::span<const std::uint32_t> pixels() const = 0;
 
+  /// The depth buffer likewise, 24 bits of depth in the lower three bytes of each pixel, 0 at the near plane; the bottom row
+  /// first. Empty where Mesa does not show it.
+  [[nodiscard]] virtual std::span<const std::uint32_t> depths() const = 0;
+
  protected:
   OsmesaContext() = default;
 };

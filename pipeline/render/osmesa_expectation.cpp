@@ -90,7 +90,7 @@ void OsmesaExpectation::upload() {
   glLineWidth(1.0F);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
-  glPolygonOffset(1.0F, 1.0F);
+  glPolygonOffset(0.6F, 1.0F);
   glEnableClientState(GL_VERTEX_ARRAY);
 }
 
@@ -99,6 +99,8 @@ void OsmesaExpectation::draw(const geometry::Pose& X_WC) {
   const double near = parameters_.near_m;
   const double reach = (X_WC.translation() - middle_.cast<double>()).norm() + static_cast<double>(radius_);
   const double far = std::max(1.01 * reach, 10.0 * near);
+  depth_far_ = static_cast<float>(far / (far - near));
+  depth_per_w_ = static_cast<float>(-far * near / (far - near));
   // Cells u = fx X/Z + cx to x = 2 (u + 0.5) / width - 1 in OpenGL's clip space, whose w is Z; its y points up, its picture is stored downwards.
   Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
   projection(0, 0) = 2.0 * view.fx / view.width;
@@ -125,13 +127,16 @@ void OsmesaExpectation::draw(const geometry::Pose& X_WC) {
 
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDisable(GL_POLYGON_OFFSET_FILL);
+  glDepthMask(GL_FALSE);  // edges do not hide each other
   glEnableClientState(GL_COLOR_ARRAY);
   glBindBuffer(GL_ARRAY_BUFFER, lines_);
   glVertexPointer(3, GL_FLOAT, 0, nullptr);
   glBindBuffer(GL_ARRAY_BUFFER, colors_);
   glColorPointer(4, GL_UNSIGNED_BYTE, 0, nullptr);
   glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(2 * map_.edges.size()));
+  glDepthMask(GL_TRUE);
   glFinish();
+  depths_ = context_->depths();
 }
 
 void OsmesaExpectation::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
@@ -196,27 +201,22 @@ void OsmesaExpectation::find_pieces(std::uint32_t edge, std::vector<VisiblePiece
   if (first >= 0) keep(first, last);
 }
 
-/// Whether the edge shows there: a pixel of its own colour, or one of an edge that lies in the same place and was drawn over it.
+/// Whether the edge shows there: a pixel of its own colour, or one of an edge that was drawn over it, where its own depth would have passed.
 bool OsmesaExpectation::shown(std::uint32_t edge, float s) const {
   const EdgeLine& line = line_[edge];
   const Eigen::Vector2f at = line.from + s * line.along;
   const bool flat = std::abs(line.along.x()) >= std::abs(line.along.y());
   const auto pixels = context_->pixels();
-  const float w = line.w0 + s * line.dw;
   for (const int beside : {0, -1, 1}) {
     const auto x = static_cast<int>(std::lround(at.x())) + (flat ? 0 : beside);
     const auto y = static_cast<int>(std::lround(at.y())) + (flat ? beside : 0);
     if (x < 0 || y < 0 || x >= view_->width || y >= view_->height) continue;
     const std::uint32_t color = pixels[static_cast<std::size_t>(y * view_->width + x)];
     if (color == color_of(edge)) return true;
-    if (beside != 0 || color == 0 || color > line_.size()) continue;
-    const EdgeLine& other = line_[color - 1];
-    const float squared = other.along.squaredNorm();
-    if (squared == 0.0F) continue;
-    const float there = std::clamp((at - other.from).dot(other.along) / squared, 0.0F, 1.0F);
-    const bool same_place = (other.from + there * other.along - at).squaredNorm() < 1.0F;
-    const float w_other = other.w0 + there * other.dw;
-    if (same_place && w >= w_other * (1.0F - static_cast<float>(parameters_.tolerance))) return true;
+    if (beside != 0 || color == 0 || depths_.empty()) continue;
+    const std::uint32_t there = depths_[static_cast<std::size_t>((view_->height - 1 - y) * view_->width + x)];
+    const float depth = depth_far_ + depth_per_w_ * (line.w0 + s * line.dw);
+    if (depth <= static_cast<float>(there & 0xFFFFFFU) / 16777215.0F) return true;
   }
   return false;
 }

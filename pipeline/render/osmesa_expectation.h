@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pipeline/render/edge_line.h"
@@ -52,6 +53,9 @@ class OsmesaExpectation : public Expectation {
   std::uint32_t colors_ = 0;
   std::vector<EdgeLine> line_;  ///< [edge], of this look; those out of view have no length.
   std::vector<VisiblePiece> found_;
+  float depth_far_ = 1.0F;  ///< depth in the buffer = depth_far_ + depth_per_w_ / Z.
+  float depth_per_w_ = 0.0F;
+  std::span<const std::uint32_t> depths_;
 };
 
 }  // namespace cgsr::render

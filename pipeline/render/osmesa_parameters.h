@@ -9,7 +9,6 @@ struct OsmesaParameters {
   int width = 640;
   int height = 480;
   double near_m = 0.05;
-  double tolerance = 0.002;
   double gap_least_px = 2.5;
   double piece_least_px = 2.0;
 
@@ -18,7 +17,6 @@ struct OsmesaParameters {
     visit.number("width", self.width, {16, 4096}, "", "columns of what OpenGL draws into");
     visit.number("height", self.height, {16, 4096}, "", "rows of it");
     visit.number("near_m", self.near_m, {0.001, 10.0}, "m", "what is nearer is not drawn");
-    visit.number("tolerance", self.tolerance, {0.0, 0.1}, "", "relative depth within which edges lie in one place");
     visit.number("gap_least_px", self.gap_least_px, {0.0, 50.0}, "px", "shorter gaps are closed: lines that cross");
     visit.number("piece_least_px", self.piece_least_px, {0.0, 100.0}, "px", "shorter pieces are left out");
   }

@@ -11,7 +11,7 @@ struct RasterParameters {
   double near_m = 0.05;
   double sample_cells = 4.0;
   double refine_cells = 0.1;
-  double tolerance = 0.002;
+  double tolerance = 0.0002;
   double piece_least_px = 2.0;
   double surface_least_cells = 1.0;
   int surfaces_most = 2000;
