@@ -5,8 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <exception>
+#include <functional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <assimp/config.h>
@@ -26,6 +30,45 @@ constexpr int kDeepest = 256;
 float encoded(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
   return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F;
+}
+
+// The first word of a line and what follows it.
+std::pair<std::string_view, std::string_view> split(std::string_view line) {
+  constexpr std::string_view kBlank = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+  const std::size_t end = std::min(line.find_first_of(kBlank), line.size());
+  std::string_view rest = line.substr(end);
+  rest.remove_prefix(std::min(rest.find_first_not_of(kBlank), rest.size()));
+  while (!rest.empty() && kBlank.find(rest.back()) != std::string_view::npos) rest.remove_suffix(1);
+  return {line.substr(0, end), rest};
+}
+
+template <class Take>
+void each_line(std::string_view text, const Take& take) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const auto [word, rest] = split(text.substr(0, end));
+    take(word, rest);
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+}
+
+// The materials that an OBJ's libraries really give a Kd: assimp fills in a grey of its own for the others.
+std::set<std::string, std::less<>> given_colors(const std::filesystem::path& obj) {
+  std::set<std::string, std::less<>> given;
+  const auto text = read_text(obj);
+  if (!text) return given;
+  each_line(*text, [&](std::string_view word, std::string_view name) {
+    if (word != "mtllib") return;
+    const auto library = read_text(obj.parent_path() / std::filesystem::path(name));
+    if (!library) return;
+    std::string material;
+    each_line(*library, [&](std::string_view key, std::string_view value) {
+      if (key == "newmtl") material = value;
+      if (key == "Kd") given.insert(material);
+    });
+  });
+  return given;
 }
 
 Material material_of(const aiMaterial& from, bool gltf) {
@@ -125,6 +168,13 @@ Result<Soup> read_mesh_file(const std::filesystem::path& path, const LoadOptions
     Soup soup;
     for (unsigned i = 0; i < scene->mNumMaterials; ++i)
       soup.materials.push_back(material_of(*scene->mMaterials[i], gltf));
+    if (!gltf) {
+      const auto given = given_colors(path);
+      for (Material& material : soup.materials) {
+        if (given.find(material.name) == given.end()) material.known_color = false;
+        if (!material.known_color) material.color.setConstant(0.5F);
+      }
+    }
     const bool y_up = options.up == UpAxis::kY || (options.up == UpAxis::kByFormat && gltf);
     if (auto good = Collector(*scene, options.scale, y_up, soup).add(*scene->mRootNode, aiMatrix4x4(), 0); !good)
       return wrong(good.error().message);

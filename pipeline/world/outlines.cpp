@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -133,7 +134,11 @@ class Tracer {
   // From the line into the surface, in its plane.
   [[nodiscard]] Eigen::Vector3d inwards(const Piece& piece) const {
     const Eigen::Vector3d along = (point(piece.to) - point(piece.from)).normalized();
-    return map_.surfaces[piece.surface].normal.cast<double>().cross(along);
+    return normal(piece).cross(along);
+  }
+
+  [[nodiscard]] Eigen::Vector3d normal(const Piece& piece) const {
+    return map_.surfaces[piece.surface].normal.cast<double>();
   }
 
   [[nodiscard]] std::uint32_t material(const Piece& piece) const { return map_.surfaces[piece.surface].material; }
@@ -189,8 +194,28 @@ class Tracer {
       }
       return;
     }
-    const bool flat = inwards(here[0]).dot(inwards(here[1])) < -kCosFlat;
-    add(here[0], here[1].surface, flat ? EdgeKind::kMaterial : EdgeKind::kCrease);
+    const auto [first, second] = seen_together(here);
+    const bool flat = inwards(first).dot(inwards(second)) < -kCosFlat;
+    add(first, second.surface, flat ? EdgeKind::kMaterial : EdgeKind::kCrease);
+  }
+
+  // Of three and more that meet: two that lie in front of each other (floor and wall, not the wall's bottom), else two that go on flat, else any.
+  [[nodiscard]] std::pair<Piece, Piece> seen_together(const std::vector<Piece>& here) const {
+    std::pair<Piece, Piece> best{here[0], here[1]};
+    double best_score = -1.0;
+    for (std::size_t a = 0; a < here.size() && here.size() > 2; ++a) {
+      for (std::size_t b = a + 1; b < std::min(here.size(), a + kMostAtVertex); ++b) {
+        const Eigen::Vector3d into_a = inwards(here[a]);
+        const Eigen::Vector3d into_b = inwards(here[b]);
+        const bool facing = into_a.dot(normal(here[b])) > 0.01 && into_b.dot(normal(here[a])) > 0.01;
+        const bool flat = into_a.dot(into_b) < -kCosFlat;
+        const double score = facing ? 2.0 + into_a.dot(into_b) : (flat ? 0.5 : 0.0);
+        if (score <= best_score) continue;
+        best_score = score;
+        best = {here[a], here[b]};
+      }
+    }
+    return best;
   }
 
   static void erase(std::vector<Piece>& pieces, std::size_t i) {

@@ -336,6 +336,21 @@ TEST(Clean, ARoomsCornersAreNotCovered) {
   EXPECT_EQ(corner.sides, corner.surfaces);
 }
 
+TEST(Clean, AWallWithABottomMeetsTheFloorThatEndsAtIt) {
+  Maker maker;
+  maker.material("floor", 0.4F);
+  maker.material("wall", 0.9F);
+  maker.level(0, 0, 3, 1, 0, 0);
+  maker.box({0, 1, 0}, {3, 1.2F, 2}, 1);
+  const Map map = maker.map();
+  const Edge foot = edge_between(map, {0, 1, 0}, {3, 1, 0});
+  EXPECT_EQ(foot.kind, EdgeKind::kCrease);
+  EXPECT_EQ(foot.sides, foot.surfaces);
+  const std::size_t floor = material_of(map, foot.surfaces[0]) == "floor" ? 0 : 1;
+  EXPECT_EQ(material_of(map, foot.surfaces[floor]), "floor");
+  EXPECT_NEAR(map.surfaces[foot.surfaces[1 - floor]].normal.y(), -1.0F, 1e-5F);
+}
+
 TEST(Clean, ACubeOnACubeHasNoSeamWhereTheirSidesGoOn) {
   Maker maker;
   maker.box({0, 0, 0}, {1, 1, 1});

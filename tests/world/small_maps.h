@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "pipeline/world/clean.h"
 #include "pipeline/world/map.h"

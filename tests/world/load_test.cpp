@@ -1,0 +1,378 @@
+#include "pipeline/world/load.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/world/compact.h"
+#include "tests/world/scratch.h"
+#include "tests/world/small_maps.h"
+
+namespace cgsr::world {
+namespace {
+
+using testing::HasSubstr;
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// The message that a file of this text is refused with; empty when it is not.
+std::string refusal(const std::string& name, const std::string& text) {
+  const ScratchFolder scratch;
+  write(scratch / name, text);
+  const auto map = load_map(scratch / name);
+  return map ? "" : map.error().message;
+}
+
+const char* const kObj = R"(# an L of two materials, and a wall
+mtllib small.mtl
+o floor
+usemtl wood
+v 0 0 0
+v 3 0 0
+v 3 1 0
+v 1 1 0
+v 1 3 0
+v 0 3 0
+f 1 2 3 4 5 6
+o wall
+usemtl paint
+v 0 0 0
+v 3 0 0
+v 3 0 2
+v 0 0 2
+f 7 8 9 10
+usemtl nowhere
+v 5 5 0
+v 6 5 0
+v 6 6 0
+f -3 -2 -1
+)";
+const char* const kMtl = "newmtl wood\nKd 0.6 0.4 0.2\nnewmtl paint\nKd 0.9 0.9 0.9\n";
+
+const char* const kCao = R"(V1
+# 3D points
+5
+0 0 0
+1 0 0 # a comment
+1 1 0
+0 1 0 name=corner
+0.5 0.5 1
+# 3D lines
+6
+0 1
+1 2
+2 3 name=back useLod=true minLineLengthThreshold=50
+3 0
+0 4
+1 3
+# faces from lines
+1
+4 0 1 2 3 name=base
+# faces from points
+1
+3 0 1 4
+0
+0
+)";
+
+const char* const kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0,"translation":[0,1,0]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
+"materials":[{"name":"green","pbrMetallicRoughness":{"baseColorFactor":[0.0,0.5,0.0,1.0]}}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[2,0,1]},
+{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
+"buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAQAAAAAAAAIA/AAAAAAAAAAAAAIA/AAABAAIAAAACAAMA"}]})";
+
+TEST(LoadMap, ObjWithItsMaterials) {
+  const ScratchFolder scratch;
+  write(scratch / "small.obj", kObj);
+  write(scratch / "small.mtl", kMtl);
+  const auto map = load_map(scratch / "small.obj");
+  ASSERT_TRUE(map) << map.error().message;
+  ASSERT_EQ(map->surfaces.size(), 3U);
+  const Edge foot = edge_between(*map, {0, 0, 0}, {3, 0, 0});
+  EXPECT_EQ(foot.kind, EdgeKind::kCrease);
+  const std::size_t wood = material_of(*map, foot.surfaces[0]) == "wood" ? 0 : 1;
+  EXPECT_EQ(material_of(*map, foot.surfaces[wood]), "wood");
+  EXPECT_NEAR(*side_luma(*map, foot, static_cast<int>(wood)), 0.299F * 0.6F + 0.587F * 0.4F + 0.114F * 0.2F, 1e-5F);
+  EXPECT_NEAR(area_of(*map), 5.0 + 6.0 + 0.5, 1e-5);
+  EXPECT_FALSE(side_luma(*map, edge_between(*map, {5, 5, 0}, {6, 5, 0}), 0)) << "no file says what 'nowhere' is";
+}
+
+TEST(LoadMap, ObjWithoutItsMaterialsHasNoColours) {
+  const ScratchFolder scratch;
+  write(scratch / "small.obj", kObj);
+  const auto map = load_map(scratch / "small.obj");
+  ASSERT_TRUE(map) << map.error().message;
+  for (const Surface& surface : map->surfaces) EXPECT_FALSE(map->materials[surface.material].known_color);
+  for (const Edge& edge : map->edges) EXPECT_FLOAT_EQ(edge.contrast, 0.25F);
+}
+
+TEST(LoadMap, AxesAndUnitsAreAsAskedFor) {
+  const ScratchFolder scratch;
+  write(scratch / "small.obj", "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4\n");
+  LoadOptions options;
+  options.up = UpAxis::kY;
+  options.scale = 0.5;
+  const auto map = load_map(scratch / "small.obj", options);
+  ASSERT_TRUE(map) << map.error().message;
+  edge_between(*map, {0, 0, 0}, {0, 0, 1});
+  edge_between(*map, {0.5F, 0, 0}, {0.5F, 0, 1});
+  EXPECT_NEAR(map->surfaces[0].normal.y(), -1.0F, 1e-6F) << "its front looked along z, which is -y now";
+}
+
+TEST(LoadMap, GltfIsTurnedUpright) {
+  const ScratchFolder scratch;
+  write(scratch / "small.gltf", kGltf);
+  const auto map = load_map(scratch / "small.gltf");
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->surfaces.size(), 1U);
+  EXPECT_EQ(map->edges.size(), 4U);
+  edge_between(*map, {0, 0, 1}, {2, 0, 1});
+  edge_between(*map, {2, 0, 1}, {2, -1, 1});
+  EXPECT_NEAR(map->materials[map->surfaces[0].material].color.y(), 0.7354F, 1e-3F) << "0.5 linear is 0.735 in sRGB";
+}
+
+TEST(LoadMap, CaoWithItsLinesAndFaces) {
+  const ScratchFolder scratch;
+  write(scratch / "small.cao", kCao);
+  const auto map = load_map(scratch / "small.cao");
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->surfaces.size(), 2U);
+  EXPECT_EQ(map->edges.size(), 7U);
+  EXPECT_EQ(count(*map, EdgeKind::kDrawn), 1);
+  EXPECT_EQ(edge_between(*map, {1, 0, 0}, {0, 1, 0}).kind, EdgeKind::kDrawn);
+  EXPECT_EQ(edge_between(*map, {0, 0, 0}, {1, 0, 0}).kind, EdgeKind::kCrease);
+}
+
+TEST(LoadMap, CaoLoadsOthersWhereItPlacesThem) {
+  const ScratchFolder scratch;
+  write(scratch / "small.cao", kCao);
+  write(scratch / "both.cao",
+        "V1\n# others first\nload(\"small.cao\")\nload(\"small.cao\", t=[0; 0; 5], tu=[0; 0; 1.5707963267948966])\n"
+        "3\n10 0 0\n11 0 0\n11 1 0\n0\n0\n1\n3 0 1 2\n0\n0\n");
+  const auto map = load_map(scratch / "both.cao");
+  ASSERT_TRUE(map) << map.error().message;
+  EXPECT_EQ(map->surfaces.size(), 5U);
+  EXPECT_EQ(map->edges.size(), 7U + 7U + 3U);
+  edge_between(*map, {0, 0, 5}, {0, 1, 5});
+  edge_between(*map, {10, 0, 0}, {11, 0, 0});
+}
+
+TEST(LoadMapFault, CaoSaysWhatIsWrongAndWhere) {
+  EXPECT_THAT(refusal("a.cao", "8\n"), HasSubstr("a.cao:1: '8': a .cao file begins with V1"));
+  EXPECT_THAT(refusal("a.cao", ""), HasSubstr("begins with V1"));
+  EXPECT_THAT(refusal("a.cao", "V1\n2\n0 0 0\n1 x 0\n"), HasSubstr("a.cao:4: 'x' where a point's coordinate"));
+  EXPECT_THAT(refusal("a.cao", "V1\n2\n0 0 0\n1 0\n"), HasSubstr("the file ends where a point's coordinate"));
+  EXPECT_THAT(refusal("a.cao", "V1\n2\n0 0 0\n1 nan 0\n"), HasSubstr("nan is not a coordinate"));
+  EXPECT_THAT(refusal("a.cao", "V1\n2\n0 0 0\n1 0 0\n1\n0 2\n"), HasSubstr("a.cao:6: point 2: there are 2"));
+  EXPECT_THAT(refusal("a.cao", "V1\n2\n0 0 0\n1 0 0\n0\n0\n1\n3 0 1 -1\n"), HasSubstr("'-1' where point"));
+  EXPECT_THAT(refusal("a.cao", "V1\n99999999\n"), HasSubstr("99999999 points: expected at most"));
+  EXPECT_THAT(refusal("a.cao", "V1\n3\n0 0 0\n1 0 0\n0 1 0\n2\n0 1\n1 2\n1\n3 0 1 2\n"),
+              HasSubstr("line 2: there are 2"));
+  EXPECT_THAT(refusal("a.cao", "V1\n4\n0 0 0\n1 0 0\n0 1 0\n1 1 1\n3\n0 1\n1 2\n2 3\n1\n3 0 1 2\n"),
+              HasSubstr("do not close"));
+  EXPECT_THAT(refusal("a.cao", "V1\n0\n0\n0\n0\n0\n0\n"), HasSubstr("no surface"));
+  EXPECT_THAT(refusal("a.cao", "V1\n0\n0\n0\n0\n1\n0 1 0.5\n"), HasSubstr("1 cylinders: cylinders are not read"));
+  EXPECT_THAT(refusal("a.cao", "V1\n0\n0\n0\n0\n0\n2\n0.5 0 1 2\n"), HasSubstr("2 circles: circles are not read"));
+  EXPECT_THAT(refusal("a.cao", "V1\nload(\"a.cao\")\n0\n0\n0\n0\n"), HasSubstr("it loads itself"));
+  EXPECT_THAT(refusal("a.cao", "V1\nload(\"b.cao\")\n0\n0\n0\n0\n"), HasSubstr("(loaded in "));
+  EXPECT_THAT(refusal("a.cao", "V1\nload(\"b.cao\", s=[2])\n"), HasSubstr("expected t=[x; y; z]"));
+}
+
+TEST(LoadMapFault, CaoInACircleIsRefused) {
+  const ScratchFolder scratch;
+  write(scratch / "a.cao", "V1\nload(\"b.cao\")\n0\n0\n0\n0\n0\n0\n");
+  write(scratch / "b.cao", "V1\nload(\"./a.cao\")\n0\n0\n0\n0\n0\n0\n");
+  const auto map = load_map(scratch / "a.cao");
+  ASSERT_FALSE(map);
+  EXPECT_THAT(map.error().message, HasSubstr("it loads itself"));
+}
+
+TEST(LoadMapFault, WhatIsNoMapIsRefusedWithItsName) {
+  EXPECT_THAT(refusal("a.stl", "solid"), HasSubstr("a.stl: '.stl' is no kind of map"));
+  EXPECT_THAT(refusal("a.obj", ""), HasSubstr("a.obj: "));
+  EXPECT_THAT(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n"), HasSubstr("a.obj: "));
+  EXPECT_THAT(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n"), HasSubstr("a.obj: "));
+  EXPECT_THAT(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 3e8 1 0\nf 1 2 3\n"), HasSubstr("at most 1000 km"));
+  EXPECT_THAT(refusal("a.gltf", "{"), HasSubstr("a.gltf: "));
+  EXPECT_THAT(refusal("a.glb", "glTF"), HasSubstr("a.glb: "));
+  EXPECT_THAT(refusal("a.cgsrmap", "CGSRMAP"), HasSubstr("too short"));
+  const auto missing = load_map("/nowhere/at/all.obj");
+  ASSERT_FALSE(missing);
+  EXPECT_THAT(missing.error().message, HasSubstr("/nowhere/at/all.obj: No such file"));
+}
+
+Map small_map() {
+  Maker maker;
+  maker.material("floor", 0.4F);
+  maker.material("box", 0.9F);
+  maker.level(-2, -2, 2, 2, 0, 0);
+  maker.box({0, 0, 0.001F}, {0.5F, 0.4F, 0.3F}, 1);
+  maker.line({-1, -1, 0}, {1, -1, 0});
+  return maker.map();
+}
+
+TEST(CompactMap, ComesBackAsItWas) {
+  const ScratchFolder scratch;
+  const Map map = small_map();
+  ASSERT_TRUE(write_compact(map, scratch / "a.cgsrmap"));
+  const auto back = load_map(scratch / "a.cgsrmap");
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_EQ(back->vertices, map.vertices);
+  EXPECT_EQ(back->triangles, map.triangles);
+  ASSERT_EQ(back->surfaces.size(), map.surfaces.size());
+  ASSERT_EQ(back->edges.size(), map.edges.size());
+  for (std::size_t i = 0; i < map.surfaces.size(); ++i) {
+    EXPECT_EQ(back->surfaces[i].first_triangle, map.surfaces[i].first_triangle);
+    EXPECT_EQ(back->surfaces[i].triangle_count, map.surfaces[i].triangle_count);
+    EXPECT_EQ(back->surfaces[i].material, map.surfaces[i].material);
+    EXPECT_EQ(back->surfaces[i].normal, map.surfaces[i].normal);
+    EXPECT_EQ(back->surfaces[i].offset_m, map.surfaces[i].offset_m);
+  }
+  for (std::size_t i = 0; i < map.edges.size(); ++i) {
+    EXPECT_EQ(back->edges[i].vertices, map.edges[i].vertices);
+    EXPECT_EQ(back->edges[i].surfaces, map.edges[i].surfaces);
+    EXPECT_EQ(back->edges[i].sides, map.edges[i].sides);
+    EXPECT_EQ(back->edges[i].kind, map.edges[i].kind);
+    EXPECT_EQ(back->edges[i].contrast, map.edges[i].contrast);
+  }
+  ASSERT_EQ(back->materials.size(), 2U);
+  EXPECT_EQ(back->materials[1].name, "box");
+  EXPECT_EQ(back->materials[1].color, map.materials[1].color);
+}
+
+TEST(CompactMapFault, DamageIsNoticed) {
+  const ScratchFolder scratch;
+  ASSERT_TRUE(write_compact(small_map(), scratch / "a.cgsrmap"));
+  const std::string good = text_of(scratch / "a.cgsrmap");
+  std::string bad = good;
+  bad[good.size() / 2] = static_cast<char>(bad[good.size() / 2] ^ 1);
+  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("the checksum does not fit"));
+  EXPECT_THAT(refusal("b.cgsrmap", good.substr(0, good.size() - 200)), HasSubstr("cut short"));
+  EXPECT_THAT(refusal("b.cgsrmap", good + "x"), HasSubstr("checksum"));
+  bad = good;
+  bad[8] = 7;
+  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("version 7: expected 1"));
+  bad = good;
+  bad[0] = 'X';
+  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("not a compact map"));
+  bad = good;
+  bad[15] = '\x7F';  // as many vertices as there are bytes in the world
+  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("more than there may be"));
+}
+
+// Indices that lead nowhere are found even under a right checksum.
+TEST(CompactMapFault, NonsenseUnderARightChecksumIsRefused) {
+  const auto refused = [](const Map& map) {
+    const ScratchFolder scratch;
+    EXPECT_TRUE(write_compact(map, scratch / "a.cgsrmap"));
+    const auto back = load_map(scratch / "a.cgsrmap");
+    return back ? std::string() : back.error().message;
+  };
+  Map map = small_map();
+  map.edges[3].vertices[1] = 1000;
+  EXPECT_THAT(refused(map), HasSubstr("an edge names a vertex"));
+  map = small_map();
+  map.edges[3].sides[1] = 1000;
+  EXPECT_THAT(refused(map), HasSubstr("an edge names a surface"));
+  map = small_map();
+  map.triangles[3][2] = 1000;
+  EXPECT_THAT(refused(map), HasSubstr("a triangle names a vertex"));
+  map = small_map();
+  map.surfaces[2].first_triangle += 1;
+  EXPECT_THAT(refused(map), HasSubstr("do not follow"));
+  map = small_map();
+  map.surfaces[2].material = 9;
+  EXPECT_THAT(refused(map), HasSubstr("a surface names a material"));
+  map = small_map();
+  map.vertices[2].x() = std::nanf("");
+  EXPECT_THAT(refused(map), HasSubstr("a vertex is not finite"));
+  map = small_map();
+  map.surfaces[1].normal.setZero();
+  EXPECT_THAT(refused(map), HasSubstr("normal"));
+}
+
+// Mutated files are read or refused, and what is read is sound; nothing crashes.
+class LoadMapFuzz : public testing::TestWithParam<const char*> {};
+
+TEST_P(LoadMapFuzz, MutatedFilesAreReadOrRefused) {
+  const ScratchFolder scratch;
+  const std::string name = GetParam();
+  std::string seed = kObj;
+  if (name == "a.cao") seed = kCao;
+  if (name == "a.gltf") seed = kGltf;
+  if (name == "a.cgsrmap") {
+    ASSERT_TRUE(write_compact(small_map(), scratch / name));
+    seed = text_of(scratch / name);
+  }
+  write(scratch / "small.mtl", kMtl);
+  std::mt19937 random(11);
+  int read = 0;
+  constexpr int kTrials = 800;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::string text = seed;
+    const std::uint32_t changes = 1 + random() % 4U;
+    for (std::uint32_t i = 0; i < changes; ++i) {
+      const std::size_t at = random() % text.size();
+      switch (random() % 6U) {
+        case 0:
+          text[at] = static_cast<char>(random() % 256U);
+          break;
+        case 1:
+          text[at] = "0123456789-+.e {}[]\",:\n"[random() % 23U];
+          break;
+        case 2:
+          text.erase(at, 1 + random() % 8U);
+          break;
+        case 3:
+          text.insert(at, text.substr(random() % text.size(), random() % 12U));
+          break;
+        case 4:
+          text.insert(at, "9999999");
+          break;
+        default:
+          if (random() % 8U == 0) text.resize(at);
+          break;
+      }
+      if (text.empty()) text = "v";
+    }
+    write(scratch / name, text);
+    const auto map = load_map(scratch / name);
+    if (!map) {
+      EXPECT_THAT(map.error().message, HasSubstr("a."));
+      continue;
+    }
+    ++read;
+    EXPECT_FALSE(map->surfaces.empty());
+    for (const Edge& edge : map->edges) {
+      ASSERT_LT(std::max(edge.vertices[0], edge.vertices[1]), map->vertices.size());
+      ASSERT_TRUE(edge.surfaces[0] < map->surfaces.size() || edge.kind == EdgeKind::kDrawn);
+    }
+    for (const Eigen::Vector3f& p : map->vertices) ASSERT_TRUE(p.allFinite());
+  }
+  if (name != "a.cgsrmap") {
+    EXPECT_GT(read, kTrials / 50) << "the mutations are so coarse that they test nothing";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, LoadMapFuzz, testing::Values("a.obj", "a.cao", "a.gltf", "a.cgsrmap"),
+                         [](const auto& file) { return std::string(file.param).substr(2); });
+
+}  // namespace
+}  // namespace cgsr::world
