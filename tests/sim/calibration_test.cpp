@@ -203,5 +203,31 @@ TEST_F(Calibration, AMisplacedMapIsStillARoom) {
   }
 }
 
+// Chapter 4's errors are those that were stated, and no others; whatever lies on something goes with it.
+TEST_F(Calibration, RigidPartsMoveByHalfACentimetre) {
+  const CalibrationErrors stated = CalibrationErrors::chapter_4();
+  constexpr int kSeeds = 800;
+  double floor = 0.0;
+  double top = 0.0;
+  double turn = 0.0;
+  for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
+    const CalibratedCopy copy = calibrated_copy(scene_, 0, stated, seed);
+    const auto moved = [&](std::size_t part) {
+      return (copy.map.parts[part].mesh.position_m[0] - scene_.parts[part].mesh.position_m[0]).cast<double>().eval();
+    };
+    EXPECT_EQ(moved(0).z(), 0.0) << "the floor is where height begins";
+    EXPECT_EQ(moved(3).z(), 0.0) << "tape lies on it";
+    EXPECT_LT((moved(1) - moved(2)).norm(), 1e-6) << "leg and top are one thing";
+    floor += moved(0).head<2>().squaredNorm() / 2 / kSeeds;
+    top += moved(1).head<2>().squaredNorm() / 2 / kSeeds;
+    EXPECT_EQ((copy.X_RC.translation() - mount_of(scene_.robots[0]).translation()).norm(), 0.0);
+    const Eigen::AngleAxisd off(copy.X_RC.linear().transpose() * mount_of(scene_.robots[0]).linear());
+    turn += off.angle() * off.angle() / 3 / kSeeds;
+  }
+  EXPECT_NEAR(std::sqrt(floor), 0.005, 0.0004);
+  EXPECT_NEAR(std::sqrt(top), 0.005, 0.0004);
+  EXPECT_NEAR(std::sqrt(turn), degrees(0.3), 0.08 * degrees(0.3));
+}
+
 }  // namespace
 }  // namespace cgsr::sim

@@ -17,6 +17,10 @@ std::span<const Experiment> experiments() {
       Experiment{"real-video", "Chapter 3 beside CAM-Shift, KCF and CSRT on real video", true, real_video},
       Experiment{"figure-3.3", "A shirt followed from a corridor into daylight (Figure 3.3)", true, figure_3_3},
       Experiment{"closed-loop", "The simulated home's robot follows a cart through changing light", true, closed_loop},
+      Experiment{"table-4.1", "A camera's pose corrected on the field (Table 4.1)", true, table_4_1},
+      Experiment{"section-4.3.3", "The same with cloth walls in between, and without them (4.3.3)", true,
+                 section_4_3_3},
+      Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };
   return kExperiments;

@@ -42,6 +42,9 @@ Result<Report> real_video(const Setting& setting);
 Result<Report> light_sweep(const Setting& setting);
 Result<Report> search_cost(const Setting& setting);
 Result<Report> figure_3_3(const Setting& setting);
+Result<Report> table_4_1(const Setting& setting);
+Result<Report> section_4_3_3(const Setting& setting);
+Result<Report> false_corrections(const Setting& setting);
 Result<Report> closed_loop(const Setting& setting);
 
 }  // namespace cgsr::lab

@@ -26,7 +26,62 @@ double resampled_mean(std::span<const double> values, int block, Random& random)
   return sum / count;
 }
 
+/// The regularised incomplete beta function by its continued fraction (Press et al., Numerical Recipes, 6.4).
+double incomplete_beta(double a, double b, double x) {
+  if (x <= 0.0) return 0.0;
+  if (x >= 1.0) return 1.0;
+  const double front =
+      std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+  if (x > (a + 1.0) / (a + b + 2.0)) return 1.0 - incomplete_beta(b, a, 1.0 - x);
+  constexpr double kTiny = 1e-300;
+  double c = 1.0;
+  double d = 1.0 - (a + b) * x / (a + 1.0);
+  d = 1.0 / (std::abs(d) < kTiny ? kTiny : d);
+  double h = d;
+  for (int m = 1; m <= 300; ++m) {
+    double step = 1.0;
+    for (const double term : {m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m)),
+                              -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0))}) {
+      d = 1.0 + term * d;
+      d = 1.0 / (std::abs(d) < kTiny ? kTiny : d);
+      c = 1.0 + term / c;
+      if (std::abs(c) < kTiny) c = kTiny;
+      step = c * d;
+      h *= step;
+    }
+    if (std::abs(step - 1.0) < 1e-14) break;
+  }
+  return front * h / a;
+}
+
+/// How likely Student's t is at least this far from 0, either way.
+double both_tails(double t, double freedom) {
+  return incomplete_beta(freedom / 2.0, 0.5, freedom / (freedom + t * t));
+}
+
 }  // namespace
+
+PairedTest paired_t_test(std::span<const double> differences) {
+  PairedTest test;
+  const auto n = static_cast<double>(differences.size());
+  if (differences.size() < 2) return test;
+  test.mean = mean(differences);
+  double squares = 0.0;
+  for (const double d : differences) squares += (d - test.mean) * (d - test.mean);
+  const double error = std::sqrt(squares / (n - 1.0) / n);
+  double low = 0.0;
+  double high = 13.0;  // the quantile of one degree of freedom is 12.7
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2.0;
+    (both_tails(middle, n - 1.0) > 0.05 ? low : high) = middle;
+  }
+  test.interval = {test.mean - low * error, test.mean + low * error};
+  if (error > 0.0) {
+    test.t = test.mean / error;
+    test.p = both_tails(test.t, n - 1.0);
+  }
+  return test;
+}
 
 Interval wilson(int successes, int trials) {
   if (trials <= 0) return {0.0, 1.0};

@@ -25,6 +25,17 @@ Interval bootstrap_mean(std::span<const double> values, int block, std::uint64_t
 /// The same for the mean of several groups' means: every draw takes each group anew, so that a long group weighs as much as a short one.
 Interval bootstrap_mean_of_means(std::span<const std::span<const double>> groups, int block, std::uint64_t seed);
 
+/// Student's t-test of paired differences: whether their mean is 0.
+struct PairedTest {
+  double mean = 0.0;
+  Interval interval;  ///< 95 %, of the mean, if differences are normal.
+  double t = 0.0;
+  double p = 1.0;  ///< both sides.
+};
+
+/// \return all zero and p = 1 for fewer than two differences.
+PairedTest paired_t_test(std::span<const double> differences);
+
 double mean(std::span<const double> values);
 
 }  // namespace cgsr::lab

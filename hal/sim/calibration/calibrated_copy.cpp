@@ -18,6 +18,7 @@ using Eigen::Vector3f;
 
 constexpr double kLongestFurniture_m = 2.5;
 constexpr float kFlat_m = 1e-3F;
+constexpr float kTouching_m = 0.02F;
 
 // Normal numbers that are the same on every machine: twelve uniform ones, whose sum has the variance 1.
 class Errors {
@@ -112,6 +113,9 @@ struct Misplacement {
   Vector3d shift = Vector3d::Zero();
   double turn_rad = 0.0;
 
+  /// `by` more.
+  void move(const Vector3d& by) { shift += by; }
+
   void apply(Mesh& mesh) const {
     Pose X = Pose::Identity();
     X.linear() << cosine(turn_rad), -sine(turn_rad), 0, sine(turn_rad), cosine(turn_rad), 0, 0, 0, 1;
@@ -138,6 +142,53 @@ Misplacement misplacement(const Extent& extent, const CalibrationErrors& sigma, 
   return wrong;
 }
 
+// What lies flat on something: tape, paint, paper.
+bool lies_flat(const Scene& scene, const std::string& thing, const Extent& extent) {
+  return extent.flat() && std::ranges::none_of(scene.parts, [&](const Part& part) {
+           return part.figure < 0 && part.in_map && part.casts_shadow && thing_of(part) == thing;
+         });
+}
+
+// The thing that `extent` lies on: one with a face in the same plane, or nearly, at that place. Empty: none.
+std::string carrier_of(const Scene& scene, const std::map<std::string, Extent>& extents, const std::string& thing) {
+  const Extent& own = extents.at(thing);
+  const Vector3f centre = own.box.center();
+  for (const Part& part : scene.parts) {
+    const std::string other = thing_of(part);
+    if (part.figure >= 0 || !part.in_map || !part.casts_shadow || other == thing) continue;
+    const Extent& extent = extents.at(other);
+    if (extent.box.squaredExteriorDistance(centre) > kTouching_m * kTouching_m) continue;
+    const Mesh& mesh = part.mesh;
+    for (const Mesh::Triangle& triangle : mesh.triangles) {
+      const Vector3f& a = mesh.position_m[triangle.corner[0]];
+      const Vector3f n =
+          (mesh.position_m[triangle.corner[1]] - a).cross(mesh.position_m[triangle.corner[2]] - a).normalized();
+      if (std::abs(n.dot(own.normal)) > 0.999F && std::abs(n.dot(centre - a)) < kTouching_m) return other;
+    }
+  }
+  return {};
+}
+
+// How far each rigid part is from where the map has it.
+std::map<std::string, Vector3d> part_moves(const Scene& scene, const std::map<std::string, Extent>& extents,
+                                           double sigma_m, Errors& errors) {
+  std::map<std::string, Vector3d> moves;
+  for (const auto& [thing, extent] : extents) {
+    Vector3d by = errors.vector(sigma_m);
+    if (extent.box.min().z() < kTouching_m) by.z() = 0.0;
+    moves[thing] = by;
+  }
+  for (const auto& [thing, extent] : extents) {
+    if (!lies_flat(scene, thing, extent)) continue;
+    const Vector3d n = extent.normal.cast<double>();
+    const std::string carrier = carrier_of(scene, extents, thing);
+    const double with_it = carrier.empty() ? 0.0 : moves.at(carrier).dot(n);
+    Vector3d& by = moves.at(thing);
+    by += (with_it - by.dot(n)) * n;
+  }
+  return moves;
+}
+
 Scene measured_map(const Scene& truth, const CalibrationErrors& sigma, Errors& errors) {
   Scene map;
   map.name = truth.name;
@@ -154,9 +205,12 @@ Scene measured_map(const Scene& truth, const CalibrationErrors& sigma, Errors& e
   for (const Part& part : truth.parts) {
     if (part.figure < 0 && part.in_map) extents[thing_of(part)].add(part.mesh);
   }
+  std::map<std::string, Vector3d> moves;
+  if (sigma.map_part_m > 0.0) moves = part_moves(truth, extents, sigma.map_part_m, errors);
   const Vector3d stretch = Vector3d::Ones() + errors.vector(sigma.map_scale);
   std::map<std::string, Misplacement> wrong;
   for (const auto& [thing, extent] : extents) wrong[thing] = misplacement(extent, sigma, errors);
+  for (const auto& [thing, by] : moves) wrong[thing].move(by);
   for (const Part& part : truth.parts) {
     if (part.figure >= 0 || !part.in_map) continue;
     map.parts.push_back(part);
@@ -169,11 +223,25 @@ Scene measured_map(const Scene& truth, const CalibrationErrors& sigma, Errors& e
 
 }  // namespace
 
+CalibrationErrors CalibrationErrors::none() {
+  return CalibrationErrors{}.times(0.0);
+}
+
+CalibrationErrors CalibrationErrors::chapter_4() {
+  CalibrationErrors errors = none();
+  errors.focal = 0.002;
+  errors.centre_px = 0.5;
+  errors.distortion = 0.002;
+  errors.mount_deg = 0.3;
+  errors.map_part_m = 0.005;
+  return errors;
+}
+
 CalibrationErrors CalibrationErrors::times(double factor) const {
   CalibrationErrors scaled = *this;
   for (double* sigma :
        {&scaled.focal, &scaled.centre_px, &scaled.distortion, &scaled.mount_m, &scaled.mount_deg, &scaled.probe_m,
-        &scaled.map_scale, &scaled.map_place_m, &scaled.map_heading_deg, &scaled.map_color}) {
+        &scaled.map_scale, &scaled.map_place_m, &scaled.map_heading_deg, &scaled.map_part_m, &scaled.map_color}) {
     *sigma *= factor;
   }
   return scaled;

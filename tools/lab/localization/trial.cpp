@@ -1,0 +1,98 @@
+#include "tools/lab/localization/trial.h"
+
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "platform/work_budget.h"
+
+namespace cgsr::lab {
+namespace {
+
+constexpr double kDeg = 180.0 / std::numbers::pi;
+constexpr int kMostImages = 200;
+constexpr double kFalse_m = 0.05;
+constexpr double kFalse_rad = 1.5 / kDeg;
+
+}  // namespace
+
+Result<config::Localization> shipped_localization(const std::string& name) {
+  return config::load_localization(std::filesystem::path(CGSR_LOCALIZATION) / (name + ".toml"));
+}
+
+Contender contender(std::string name, const config::Localization& shipped, localization::Method method) {
+  Contender made{std::move(name), shipped, false};
+  made.configuration.localizer.method = method;
+  return made;
+}
+
+Contender plain_em(std::string name, const config::Localization& shipped) {
+  Contender made{std::move(name), shipped, false};
+  made.configuration.localizer.search = false;
+  made.configuration.localizer.gate = false;
+  return made;
+}
+
+PoseError error_of(const geometry::Pose& X, const geometry::Pose& X_true) {
+  const geometry::Vector6d step = geometry::step_between(X_true, X);
+  return {step.head<3>().norm(), step.tail<3>().norm()};
+}
+
+bool Outcome::false_correction() const {
+  return answer.corrected && ((error.position_m > prior.position_m && error.position_m > kFalse_m) ||
+                              (error.direction_rad > prior.direction_rad && error.direction_rad > kFalse_rad));
+}
+
+Outcome correct_once(localization::Localizer& localizer, const ImageView& image, const localization::Prior& prior,
+                     const Standpoint& truth, const geometry::Pose& X_RC_told) {
+  localizer.restart();
+  Outcome outcome;
+  UnlimitedBudget budget;
+  do {
+    outcome.answer = localizer.correct(image, prior, budget);
+    ++outcome.images;
+  } while (outcome.answer.reason == localization::Reason::kSearching && outcome.images < kMostImages);
+  outcome.error = error_of(outcome.answer.X_WC, truth.X_WC);
+  outcome.robot = error_of(outcome.answer.X_WC * X_RC_told.inverse(), truth.X_WR);
+  outcome.prior = error_of(prior.X_WC, truth.X_WC);
+  return outcome;
+}
+
+void Tally::add(const Outcome& outcome) {
+  ++trials;
+  wrong += outcome.false_correction() ? 1 : 0;
+  if (!outcome.answer.corrected) {
+    ++refused[std::string(name_of(outcome.answer.reason))];
+    return;
+  }
+  ++corrected;
+  position_cm.push_back(outcome.error.position_m * 100.0);
+  direction_deg.push_back(outcome.error.direction_rad * kDeg);
+  robot_cm.push_back(outcome.robot.position_m * 100.0);
+  robot_deg.push_back(outcome.robot.direction_rad * kDeg);
+  images.push_back(outcome.images);
+}
+
+std::string Tally::refusals(const std::string& name) const {
+  std::string words;
+  for (const auto& [reason, count] : refused) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, reason);
+  return words.empty() ? fmt::format("{} was corrected in all.", name)
+                       : fmt::format("{} was not corrected in {}: {}.", name, trials - corrected, words);
+}
+
+void add_rows(const std::string& row, const Tally& tally, std::uint64_t seed, Report& report,
+              std::optional<std::pair<double, double>> theirs) {
+  report.rows.push_back(share_row(row, "corrected", tally.corrected, tally.trials));
+  Row position = mean_row(row, "position error", "cm", tally.position_cm, seed);
+  Row direction = mean_row(row, "direction error", "deg", tally.direction_deg, seed);
+  if (theirs) {
+    position.dissertation = theirs->first;
+    direction.dissertation = theirs->second;
+  }
+  report.rows.push_back(std::move(position));
+  report.rows.push_back(std::move(direction));
+  report.rows.push_back(mean_row(row, "images needed", "", tally.images, seed));
+  report.rows.push_back(share_row(row, "false corrections", tally.wrong, tally.trials));
+}
+
+}  // namespace cgsr::lab
