@@ -324,7 +324,7 @@ TEST_P(LoadMapFuzz, MutatedFilesAreReadOrRefused) {
   write(scratch / "small.mtl", kMtl);
   std::mt19937 random(11);
   int read = 0;
-  constexpr int kTrials = 800;
+  constexpr int kTrials = 500;
   for (int trial = 0; trial < kTrials; ++trial) {
     std::string text = seed;
     const std::uint32_t changes = 1 + random() % 4U;
