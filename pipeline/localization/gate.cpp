@@ -13,7 +13,7 @@ namespace {
 constexpr float kMostExplained = 1.1F;
 constexpr float kMostLead = 0.5F;
 constexpr float kLeadCounts = 0.5F;
-constexpr float kPriorCounts = 0.02F;
+constexpr float kPriorCounts = 0.01F;
 constexpr int kLeastExpected = 3;
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {

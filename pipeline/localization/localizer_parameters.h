@@ -39,9 +39,9 @@ struct LocalizerParameters {
   int matches_least = 4;
   double explained_least = 0.45;
   double lead_least = 0.02;
-  double evidence_least = 0.65;
-  double prior_chi2_most = 20.0;
-  double sigma_most_m = 0.10;
+  double evidence_least = 0.6;
+  double prior_chi2_most = 25.0;
+  double sigma_most_m = 0.07;
   double sigma_most_deg = 3.0;
   double rms_most_px = 1.35;
   int pieces_most = 1200;

@@ -18,6 +18,7 @@ constexpr double kSpread_px = 5.0;           // an axis of the prior that moves 
 constexpr double kNeighbourSpread_px = 1.5;  // ... no neighbours
 constexpr double kFarthest = 2.5;            // sigmas
 constexpr double kDistinct_px = 3.0;
+constexpr double kRival_px = 8.0;  // nearer than this the second-best pose would be hardly an error
 constexpr std::size_t kKept = 12;
 constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
 constexpr int kNeighbourRounds = 4;
@@ -93,7 +94,7 @@ Search::Search(const LocalizerParameters& parameters, Alternation& alternation, 
 }
 
 float Search::rank_of(const Estimate& estimate) {
-  return estimate.solved ? estimate.explained - 0.02F * estimate.prior_chi2 : -10.0F;
+  return estimate.solved ? estimate.explained - 0.01F * estimate.prior_chi2 : -10.0F;
 }
 
 double Search::motion_between(const Pose& a, const Pose& b) const {
@@ -236,7 +237,7 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
   best_ = Estimate{};
   lead_ = 1.0F;
   if (estimates_.empty()) return;
-  constexpr std::size_t kJudged = 3;
+  constexpr std::size_t kJudged = 5;
   std::array<Estimate, kJudged> judged;
   const std::size_t count = std::min(kJudged, estimates_.size());
   for (std::size_t i = 0; i < count; ++i)
@@ -245,7 +246,7 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
             [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
   best_ = judged[0];
   for (std::size_t i = 1; i < count; ++i) {
-    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kDistinct_px) continue;
+    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kRival_px) continue;
     lead_ = std::min(lead_, rank_of(best_) - rank_of(judged[i]));
     break;
   }
