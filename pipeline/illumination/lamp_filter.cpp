@@ -1,0 +1,255 @@
+#include "pipeline/illumination/lamp_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+namespace cgsr::illumination {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kGate = 16.0;          // of one shadow, 2 degrees of freedom: 3 in 10,000 are further away
+constexpr double kRegistrationNoise = 0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
+constexpr double kStartSigma_m = 6.0;   // along the floor, before the first shadow
+constexpr double kFadedSigma_m = 0.5;
+
+Matrix3d cross(const Vector3d& v) {
+  Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+}  // namespace
+
+LampFilter::LampFilter(const Board& board, const LampParameters& parameters)
+    : board_(board), parameters_(parameters) {}
+
+LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const {
+  Prediction prediction;
+  const Vector3d p_RL = X_WR.inverse() * Vector3d(x.head<3>());
+  const Vector3d before_turn = board_.X_RB.inverse() * p_RL;
+  const Vector3d turn = x.tail<3>();
+  const Vector3d p_BL = before_turn + before_turn.cross(turn);
+  const Vector3d tip = board_.probe[probe].p_BA + x.segment<3>(3 + 3 * static_cast<Eigen::Index>(probe));
+  if (p_BL.z() < tip.z() + 0.05) return prediction;
+  const auto model = shadow_of(p_BL, tip);
+  prediction.p_BS = model.p_BS;
+  const Matrix3d R_BW = (X_WR.linear() * board_.X_RB.linear()).transpose();
+  const Eigen::Matrix<double, 2, 3> by_world = model.by_lamp * R_BW;
+  prediction.by_state.leftCols<3>() = by_world;
+  prediction.by_state.middleCols<3>(3 + 3 * static_cast<Eigen::Index>(probe)) = model.by_tip;
+  prediction.by_state.rightCols<3>() = model.by_lamp * cross(before_turn);
+  // The robot moved by a step is the lamp moved the other way.
+  prediction.by_pose.leftCols<3>() = -by_world;
+  prediction.by_pose.rightCols<3>() = by_world * cross(Vector3d(x.head<3>()) - X_WR.translation());
+  prediction.valid = true;
+  return prediction;
+}
+
+double LampFilter::distance(const Track& track, std::size_t probe, const ProbeShadow& shadow,
+                            const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
+                            const geometry::Matrix6d& registration) const {
+  const auto prediction = predict(track.x, probe, X_WR);
+  if (!prediction.valid) return std::numeric_limits<double>::infinity();
+  const Vector2d residual = shadow.p_BS - prediction.p_BS;
+  const Matrix2d S = prediction.by_state * track.P * prediction.by_state.transpose() +
+                     prediction.by_pose * pose * prediction.by_pose.transpose() + shadow.covariance +
+                     shadow.by_pose * registration * shadow.by_pose.transpose();
+  return residual.dot(S.inverse() * residual);
+}
+
+void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMostProbes>& shadow,
+                         const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
+                         const geometry::Matrix6d& registration, int iterations) const {
+  using Joint = Eigen::Matrix<double, 4, 1>;
+  using Wide = Eigen::Matrix<double, 4, kState>;
+  State x = track.x;
+  Wide H = Wide::Zero();
+  Eigen::Matrix<double, kState, 4> gain = Eigen::Matrix<double, kState, 4>::Zero();
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    Joint residual = Joint::Zero();
+    Eigen::Matrix<double, 4, 6> by_pose = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix<double, 4, 6> by_camera = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix4d V = Eigen::Matrix4d::Identity();
+    H.setZero();
+    for (std::size_t i = 0; i < kMostProbes; ++i) {
+      if (shadow[i] == nullptr) continue;
+      const auto prediction = predict(x, i, X_WR);
+      if (!prediction.valid) return;
+      const auto row = static_cast<Eigen::Index>(2 * i);
+      residual.segment<2>(row) = shadow[i]->p_BS - prediction.p_BS;
+      H.middleRows<2>(row) = prediction.by_state;
+      by_pose.middleRows<2>(row) = prediction.by_pose;
+      by_camera.middleRows<2>(row) = shadow[i]->by_pose;
+      V.block<2, 2>(row, row) = shadow[i]->covariance;
+    }
+    V += by_pose * pose * by_pose.transpose() + by_camera * registration * by_camera.transpose();
+    const Eigen::Matrix4d S = H * track.P * H.transpose() + V;
+    const Eigen::LLT<Eigen::Matrix4d> solver(S);
+    if (solver.info() != Eigen::Success) return;
+    gain = solver.solve(H * track.P).transpose();
+    // The iterated filter: linearised where it has come to, corrected from where it was.
+    const Joint innovation = residual - H * (track.x - x);
+    x = track.x + gain * innovation;
+  }
+  track.x = x;
+  const Covariance P = track.P - gain * H * track.P;
+  track.P = 0.5 * (P + P.transpose());
+}
+
+LampFilter::Track LampFilter::started(const LampEstimate& estimate, const geometry::Pose& X_WR) const {
+  Track track;
+  track.x.head<3>() = X_WR * estimate.p_RL;
+  track.x[2] = parameters_.height_m;
+  track.P.diagonal().head<2>().setConstant(kStartSigma_m * kStartSigma_m);
+  track.P(2, 2) = parameters_.height_sigma_m * parameters_.height_sigma_m;
+  // Tip and foot both were measured, and what is seen hangs on their difference.
+  track.P.diagonal().segment<6>(3).setConstant(2.0 * board_.place_sigma_m * board_.place_sigma_m);
+  track.P.diagonal().tail<3>().setConstant(board_.turn_sigma_rad * board_.turn_sigma_rad);
+  return track;
+}
+
+bool LampFilter::should_show(const Track& track, std::size_t probe, const geometry::Pose& X_WR,
+                             const geometry::Pose& X_BC) const {
+  const auto prediction = predict(track.x, probe, X_WR);
+  if (!prediction.valid) return false;
+  const Vector2d& p = prediction.p_BS;
+  const Probe& of = board_.probe[probe];
+  if ((p - of.foot_B).norm() < 1.6 * of.radius_m) return false;
+  if (std::abs(p.x()) > board_.depth_m / 2 - 0.01 || std::abs(p.y()) > board_.width_m / 2 - 0.01) return false;
+  const BoardView view(board_.camera, X_BC);
+  const auto pixel = view.pixel({p.x(), p.y(), 0.0});
+  if (!pixel.in_front || pixel.at.x() < 10.0 || pixel.at.y() < 10.0 || pixel.at.x() > board_.camera.width_px - 11.0 ||
+      pixel.at.y() > board_.camera.height_px - 11.0) {
+    return false;
+  }
+  for (int i = 0; i < board_.probes; ++i) {
+    const Probe& cone = board_.probe[static_cast<std::size_t>(i)];
+    const Outline outline = outline_of(cone.foot_B, cone.radius_m, cast(view.p_BC(), cone.p_BA));
+    if (within(outline, cone.foot_B, cone.radius_m, p, 0.01)) return false;
+  }
+  return true;
+}
+
+LampChange LampFilter::update(const ProbeObservation& observation, const geometry::Pose& X_WR,
+                              const geometry::Matrix6d& pose_covariance) {
+  LampChange change;
+  if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow) return change;
+  geometry::Matrix6d pose = pose_covariance;
+  const double place = parameters_.pose_sigma_m * parameters_.pose_sigma_m;
+  const double turn = parameters_.pose_sigma_deg * std::numbers::pi / 180.0;
+  pose(0, 0) = std::max(pose(0, 0), place);
+  pose(1, 1) = std::max(pose(1, 1), place);
+  pose(5, 5) = std::max(pose(5, 5), turn * turn);
+  const geometry::Matrix6d registration = kRegistrationNoise * observation.registration.covariance;
+
+  // Whose shadow is it? The nearest pair of track and shadow first.
+  std::array<std::array<bool, ShadowFinder::kMostShadows>, kMostProbes> taken{};
+  std::array<std::array<const ProbeShadow*, kMostProbes>, kMostLamps> own{};
+  for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
+    const auto& found = observation.probe[probe];
+    for (int round = 0; round < found.count; ++round) {
+      double nearest = kGate;
+      int track_of = -1;
+      int shadow_of_track = -1;
+      for (int t = 0; t < count_; ++t) {
+        if (own[static_cast<std::size_t>(t)][probe] != nullptr) continue;
+        for (int k = 0; k < found.count; ++k) {
+          if (taken[probe][static_cast<std::size_t>(k)]) continue;
+          const double d = distance(track_[static_cast<std::size_t>(t)], probe, found.shadow[static_cast<std::size_t>(k)],
+                                    X_WR, pose, registration);
+          if (d < nearest) nearest = d, track_of = t, shadow_of_track = k;
+        }
+      }
+      if (track_of < 0) break;
+      own[static_cast<std::size_t>(track_of)][probe] = &found.shadow[static_cast<std::size_t>(shadow_of_track)];
+      taken[probe][static_cast<std::size_t>(shadow_of_track)] = true;
+    }
+  }
+  for (int t = 0; t < count_; ++t) {
+    Track& track = track_[static_cast<std::size_t>(t)];
+    const auto& shadow = own[static_cast<std::size_t>(t)];
+    if (shadow[0] != nullptr || shadow[1] != nullptr) {
+      correct(track, shadow, X_WR, pose, registration, 2);
+      ++track.known.seen;
+      track.known.missed = 0;
+      if (!track.known.steady && track.known.seen >= parameters_.steady_after) {
+        track.known.steady = true;
+        change.found = true;
+      }
+      continue;
+    }
+    bool expected = false;
+    for (int i = 0; i < board_.probes; ++i) {
+      if ((observation.missing & (1 << i)) != 0) continue;
+      expected = expected || should_show(track, static_cast<std::size_t>(i), X_WR, observation.registration.X_BC);
+    }
+    if (expected) ++track.known.missed;
+  }
+  // Shadows of nobody known begin a lamp of their own.
+  ProbeObservation rest = observation;
+  int left_over = 0;
+  for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
+    rest.probe[probe].count = 0;
+    for (int k = 0; k < observation.probe[probe].count; ++k) {
+      if (taken[probe][static_cast<std::size_t>(k)]) continue;
+      rest.probe[probe].shadow[static_cast<std::size_t>(rest.probe[probe].count++)] =
+          observation.probe[probe].shadow[static_cast<std::size_t>(k)];
+      ++left_over;
+    }
+  }
+  if (left_over > 0) {
+    const auto lamps = locate_lamps(board_, parameters_, rest);
+    for (int i = 0; i < lamps.count && count_ < kMostLamps; ++i) {
+      const LampEstimate& estimate = lamps.lamp[static_cast<std::size_t>(i)];
+      if (estimate.status != LampStatus::kFound) continue;
+      Track track = started(estimate, X_WR);
+      // Its own shadows: those that fit where the estimate puts it.
+      std::array<const ProbeShadow*, kMostProbes> shadow{};
+      for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
+        if ((estimate.probes & (1 << probe)) == 0) continue;
+        const auto model = shadow_of(board_.X_RB.inverse() * estimate.p_RL, board_.probe[probe].p_BA);
+        double nearest = 0.05;
+        for (int k = 0; k < rest.probe[probe].count; ++k) {
+          const ProbeShadow& candidate = rest.probe[probe].shadow[static_cast<std::size_t>(k)];
+          const double apart = (candidate.p_BS - model.p_BS).norm();
+          if (apart < nearest) nearest = apart, shadow[probe] = &candidate;
+        }
+      }
+      correct(track, shadow, X_WR, pose, registration, 4);
+      track.known.seen = 1;
+      track.known.steady = parameters_.steady_after <= 1;
+      change.found = change.found || track.known.steady;
+      track_[static_cast<std::size_t>(count_++)] = track;
+    }
+  }
+  for (int t = 0; t < count_;) {
+    Track& track = track_[static_cast<std::size_t>(t)];
+    track.known.p_WL = track.x.head<3>();
+    track.known.covariance = track.P.topLeftCorner<3, 3>();
+    const bool doubted = !track.known.steady && track.known.missed >= 2;
+    if (track.known.missed < parameters_.gone_after && !doubted) {
+      ++t;
+      continue;
+    }
+    change.gone = change.gone || track.known.steady;
+    track_[static_cast<std::size_t>(t)] = track_[static_cast<std::size_t>(--count_)];
+  }
+  const auto before = [](const Track& a, const Track& b) {
+    if (a.known.steady != b.known.steady) return a.known.steady;
+    return a.known.seen > b.known.seen;
+  };
+  std::sort(track_.begin(), track_.begin() + count_, before);
+  return change;
+}
+
+}  // namespace cgsr::illumination

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "pipeline/geometry/pose.h"
+#include "pipeline/illumination/lamp.h"
+
+namespace cgsr::illumination {
+
+/// A lamp that many images agree on, world frame.
+struct KnownLamp {
+  Eigen::Vector3d p_WL = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  int seen = 0;    ///< images that showed it.
+  int missed = 0;  ///< images in a row that should have and did not.
+  bool steady = false;
+};
+
+/// What an image did to the lamps that are known.
+struct LampChange {
+  bool found = false;  ///< one became steady.
+  bool gone = false;   ///< a steady one was given up: switched off, or moved.
+};
+
+/// Pulls the observations of many images together while the robot moves: each lamp is a Kalman filter over its place and over what was measured
+/// wrongly on the board (tips and the board's turn), which stays the same from image to image. So standing still does not feign accuracy, and turning
+/// around tells lamp from board.
+///
+/// Threads: one. Nothing is allocated.
+class LampFilter {
+ public:
+  static constexpr int kMostLamps = 4;
+
+  LampFilter(const Board& board, const LampParameters& parameters);
+
+  /// \param X_WR, pose_covariance  the robot's pose in this image and the covariance of geometry::moved(X_WR, step).
+  LampChange update(const ProbeObservation& observation, const geometry::Pose& X_WR,
+                    const geometry::Matrix6d& pose_covariance);
+
+  [[nodiscard]] int count() const { return count_; }
+  /// The best known first.
+  [[nodiscard]] const KnownLamp& lamp(int i) const { return track_[static_cast<std::size_t>(i)].known; }
+  void clear() { count_ = 0; }
+
+ private:
+  // Lamp 0..2, tips 3..5 and 6..8, the board's turn 9..11.
+  static constexpr int kState = 12;
+  using State = Eigen::Matrix<double, kState, 1>;
+  using Covariance = Eigen::Matrix<double, kState, kState>;
+  struct Track {
+    State x = State::Zero();
+    Covariance P = Covariance::Zero();
+    KnownLamp known;
+  };
+  struct Prediction {
+    Eigen::Vector2d p_BS = Eigen::Vector2d::Zero();
+    Eigen::Matrix<double, 2, kState> by_state = Eigen::Matrix<double, 2, kState>::Zero();
+    Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+    bool valid = false;
+  };
+
+  [[nodiscard]] Prediction predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const;
+  [[nodiscard]] double distance(const Track& track, std::size_t probe, const ProbeShadow& shadow,
+                                const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
+                                const geometry::Matrix6d& registration) const;
+  void correct(Track& track, const std::array<const ProbeShadow*, kMostProbes>& shadow, const geometry::Pose& X_WR,
+               const geometry::Matrix6d& pose, const geometry::Matrix6d& registration, int iterations) const;
+  [[nodiscard]] bool should_show(const Track& track, std::size_t probe, const geometry::Pose& X_WR,
+                                 const geometry::Pose& X_BC) const;
+  Track started(const LampEstimate& estimate, const geometry::Pose& X_WR) const;
+
+  Board board_;
+  LampParameters parameters_;
+  std::array<Track, kMostLamps> track_;
+  int count_ = 0;
+};
+
+}  // namespace cgsr::illumination

@@ -1,0 +1,70 @@
+#include "pipeline/illumination/probe_observation.h"
+
+namespace cgsr::illumination {
+namespace {
+
+constexpr double kMostSaturated = 0.3;  // of the board's places that were looked at
+
+}  // namespace
+
+std::string_view name_of(ObservationStatus status) {
+  switch (status) {
+    case ObservationStatus::kSeen:
+      return "seen";
+    case ObservationStatus::kNoShadow:
+      return "no shadow";
+    case ObservationStatus::kNoImage:
+      return "no image";
+    case ObservationStatus::kWrongSize:
+      return "not the calibrated camera's size";
+    case ObservationStatus::kNotRegistered:
+      return "board and probes not found";
+    case ObservationStatus::kSaturated:
+      return "board saturated";
+  }
+  return "unknown";
+}
+
+ProbeObserver::ProbeObserver(const Board& board, const ProbesParameters& parameters, double lamp_height_m)
+    : board_(board), parameters_(parameters) {
+  finders_.reserve(static_cast<std::size_t>(board.probes));
+  for (int i = 0; i < board.probes; ++i) finders_.emplace_back(board, i, parameters.shadow, lamp_height_m);
+}
+
+ProbeObservation ProbeObserver::observe(const ImageView& image) {
+  ProbeObservation observation;
+  if (image.empty() || image.format == PixelFormat::kBgr24) return observation;
+  if (image.width_px != board_.camera.width_px || image.height_px != board_.camera.height_px) {
+    observation.status = ObservationStatus::kWrongSize;
+    return observation;
+  }
+  const LumaView luma(image);
+  observation.registration = register_board(board_, parameters_.registration, luma, last_X_BC_, has_last_);
+  if (!observation.registration.good && has_last_) {
+    observation.registration = register_board(board_, parameters_.registration, luma, last_X_BC_, false);
+  }
+  has_last_ = observation.registration.good;
+  if (!observation.registration.good) {
+    observation.status = ObservationStatus::kNotRegistered;
+    return observation;
+  }
+  last_X_BC_ = observation.registration.X_BC;
+  int shadows = 0;
+  double saturated = 0.0;
+  const double brightest = image.format == PixelFormat::kYuyv ? 233.5 : 253.5;
+  for (std::size_t i = 0; i < finders_.size(); ++i) {
+    if ((observation.registration.cones & (1 << i)) == 0) {
+      observation.missing |= 1 << i;
+      continue;
+    }
+    observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC);
+    shadows += observation.probe[i].count;
+    saturated = std::max(saturated, finders_[i].share_brighter_than(brightest));
+  }
+  observation.status = shadows > 0                   ? ObservationStatus::kSeen
+                       : saturated > kMostSaturated ? ObservationStatus::kSaturated
+                                                     : ObservationStatus::kNoShadow;
+  return observation;
+}
+
+}  // namespace cgsr::illumination

@@ -1,0 +1,237 @@
+#include "pipeline/illumination/registration.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+namespace cgsr::illumination {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Matrix6d;
+using geometry::Vector6d;
+
+constexpr int kMostPoints = 320;
+constexpr int kMostReach_px = 16;
+constexpr double kNoise_px = 0.15;   // of one point, out of pixel noise
+constexpr double kSoft_px = 0.8;     // beyond it a point counts less: half at this distance
+constexpr int kRounds = 3;           // of looking for edges
+constexpr int kSteps = 2;            // of Gauss-Newton on what one round found
+
+// A place on an expected line, and where its edge was found.
+struct EdgePoint {
+  Vector3d p_B;
+  Vector2d normal;      // in the image, unit
+  double offset_px;     // of the edge along the normal, from where it was expected
+  Vector2d expected;
+  double sigma2_px;     // what it tells, its line's common error included
+  int feature;          // board 0, cones 1 and 2
+};
+
+// Brightness across an expected line, at whole pixels; the strongest change within reach, to a fraction of a pixel.
+bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal, int reach, double least_contrast,
+               double& offset_px) {
+  const Vector2d far = (reach + 1.0) * normal;
+  if (!image.holds(at.x() - far.x(), at.y() - far.y()) || !image.holds(at.x() + far.x(), at.y() + far.y())) return false;
+  std::array<float, 2 * kMostReach_px + 3> value;
+  const int count = 2 * reach + 3;
+  for (int i = 0; i < count; ++i) {
+    const Vector2d p = at + (i - reach - 1) * normal;
+    value[static_cast<std::size_t>(i)] = image.at(p.x(), p.y());
+  }
+  int best = -1;
+  float most = 0.0F;
+  std::array<float, 2 * kMostReach_px + 3> change;
+  for (int i = 1; i + 1 < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    change[k] = std::abs(value[k + 1] - value[k - 1]);
+    // Of two edges alike the nearer one: silhouette beside shadow.
+    const float score = change[k] * (1.0F - 0.03F * std::abs(static_cast<float>(i - reach - 1)));
+    if (score > most) {
+      most = score;
+      best = i;
+    }
+  }
+  if (best < 2 || best + 2 >= count) return false;
+  const auto k = static_cast<std::size_t>(best);
+  if (change[k] < static_cast<float>(least_contrast)) return false;
+  const float bend = change[k - 1] - 2.0F * change[k] + change[k + 1];
+  if (bend >= 0.0F) return false;
+  const float fraction = std::clamp(0.5F * (change[k - 1] - change[k + 1]) / bend, -1.0F, 1.0F);
+  offset_px = best - reach - 1 + static_cast<double>(fraction);
+  return true;
+}
+
+// Collects points along the lines that the camera should see.
+class Collector {
+ public:
+  Collector(const Board& board, const RegistrationParameters& parameters, const LumaView& image, const BoardView& view,
+            int reach, std::array<EdgePoint, kMostPoints>& points)
+      : board_(board), parameters_(parameters), image_(image), view_(view), reach_(reach), points_(points) {}
+
+  int collect() {
+    const double x = board_.depth_m / 2;
+    const double y = board_.width_m / 2;
+    segment({x, -y, 0.0}, {x, y, 0.0}, 0);
+    segment({-x, -y, 0.0}, {-x, y, 0.0}, 0);
+    segment({-x, y, 0.0}, {x, y, 0.0}, 0);
+    segment({-x, -y, 0.0}, {x, -y, 0.0}, 0);
+    for (int i = 0; i < board_.probes; ++i) cone(board_.probe[static_cast<std::size_t>(i)], i + 1);
+    return count_;
+  }
+
+ private:
+  // Is a point of the board behind a cone?
+  [[nodiscard]] bool hidden(const Vector2d& p_B) const {
+    for (int i = 0; i < board_.probes; ++i) {
+      const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
+      const Outline outline = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
+      if (within(outline, probe.foot_B, probe.radius_m, p_B, 0.008)) return true;
+    }
+    return false;
+  }
+
+  void segment(const Vector3d& from, const Vector3d& to, int feature) {
+    const Vector3d d = to - from;
+    // As many points as the middle's resolution asks for; board lines are straight but for the lens.
+    const auto middle = view_.derivative(from + 0.5 * d);
+    if (!middle.in_front) return;
+    const double length_px = (middle.by_point * d).norm();
+    const int steps = std::clamp(static_cast<int>(length_px / parameters_.spacing_px), 2, 120);
+    const int begin = count_;
+    for (int i = 0; i < steps; ++i) {
+      const Vector3d p_B = from + (i + 0.5) / steps * d;
+      if (feature == 0 && hidden(p_B.head<2>())) continue;
+      add(p_B, d, feature);
+    }
+    weigh(begin);
+  }
+
+  void cone(const Probe& probe, int feature) {
+    const Outline outline = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
+    if (!outline.valid) return;
+    for (const Vector2d& touch : outline.touch) {
+      const Vector3d low(touch.x(), touch.y(), 0.0);
+      const Vector3d up = probe.p_BA - low;
+      segment(low + 0.06 * up, low + 0.94 * up, feature);
+    }
+    // The front of the base, between the two points where the silhouette begins, on the camera's side.
+    const Vector2d forward = (cast(view_.p_BC(), probe.p_BA) - probe.foot_B).normalized();
+    const double front = std::atan2(-forward.y(), -forward.x());
+    constexpr int kArc = 8;
+    const int begin = count_;
+    for (int i = 0; i < kArc; ++i) {
+      const double angle = front + (i - (kArc - 1) / 2.0) * (0.8 * std::numbers::pi / kArc);
+      const Vector2d out(std::cos(angle), std::sin(angle));
+      const Vector2d at = probe.foot_B + probe.radius_m * out;
+      add({at.x(), at.y(), 0.0}, {-out.y(), out.x(), 0.0}, feature);
+    }
+    weigh(begin);
+  }
+
+  void add(const Vector3d& p_B, const Vector3d& along, int feature) {
+    if (count_ >= kMostPoints) return;
+    const auto pixel = view_.pixel(p_B);
+    if (!pixel.in_front || !image_.holds(pixel.at.x(), pixel.at.y(), reach_ + 1.0)) return;
+    const auto d = view_.derivative(p_B);
+    const Vector2d tangent = d.by_point * along;
+    const double length = tangent.norm();
+    if (length < 1e-9) return;
+    EdgePoint& point = points_[static_cast<std::size_t>(count_)];
+    point.normal = Vector2d(-tangent.y(), tangent.x()) / length;
+    if (!find_edge(image_, d.at, point.normal, reach_, parameters_.least_contrast, point.offset_px)) return;
+    point.p_B = p_B;
+    point.expected = d.at;
+    point.feature = feature;
+    // How many pixels the calibration's own error is here.
+    const double px_per_m = d.by_point.norm() / std::numbers::sqrt2;
+    point.sigma2_px = board_.place_sigma_m * px_per_m;
+    ++count_;
+  }
+
+  // The points of one line err together by what was measured wrongly: all of them tell no more than one that errs so.
+  void weigh(int begin) {
+    const int number = count_ - begin;
+    for (int i = begin; i < count_; ++i) {
+      EdgePoint& point = points_[static_cast<std::size_t>(i)];
+      point.sigma2_px = kNoise_px * kNoise_px + number * point.sigma2_px * point.sigma2_px;
+    }
+  }
+
+  const Board& board_;
+  const RegistrationParameters& parameters_;
+  const LumaView& image_;
+  const BoardView& view_;
+  int reach_;
+  std::array<EdgePoint, kMostPoints>& points_;
+  int count_ = 0;
+};
+
+void accumulate(Matrix6d& H, Vector6d& g, const Vector6d& j, double residual, double weight) {
+  for (int a = 0; a < 6; ++a) {
+    const double wa = weight * j[a];
+    g[a] += wa * residual;
+    for (int b = a; b < 6; ++b) H(a, b) += wa * j[b];
+  }
+}
+
+}  // namespace
+
+Registration register_board(const Board& board, const RegistrationParameters& parameters, const LumaView& image,
+                            const geometry::Pose& start, bool start_is_good) {
+  Registration result;
+  result.X_BC = start_is_good ? start : board.X_BC;
+  std::array<EdgePoint, kMostPoints> points;
+  Vector6d prior;
+  prior.head<3>().setConstant(1.0 / (board.mount_sigma_m * board.mount_sigma_m));
+  prior.tail<3>().setConstant(1.0 / (board.mount_sigma_rad * board.mount_sigma_rad));
+  const int first = start_is_good ? 1 : 0;
+  for (int round = first; round < kRounds; ++round) {
+    const double reach_px = round == 0 ? parameters.first_reach_px : parameters.next_reach_px;
+    const int reach = std::min(kMostReach_px, static_cast<int>(std::ceil(reach_px)));
+    const geometry::Pose X_round = result.X_BC;
+    const BoardView view(board.camera, X_round);
+    const int count = Collector(board, parameters, image, view, reach, points).collect();
+    if (count < parameters.least_points) return result;
+    const double soft_px = round == 0 ? 3.0 * kSoft_px : kSoft_px;
+    Vector6d total = Vector6d::Zero();
+    for (int step = 0; step < kSteps; ++step) {
+      Matrix6d H = prior.asDiagonal();
+      Vector6d g = prior.cwiseProduct(geometry::step_between(geometry::moved(X_round, total), board.X_BC));
+      double squares = 0.0;
+      std::array<int, 3> agree{};
+      for (int i = 0; i < count; ++i) {
+        const EdgePoint& point = points[static_cast<std::size_t>(i)];
+        const auto d = view.derivative(point.p_B);
+        const Vector6d j = (point.normal.transpose() * view.by_pose(d, point.p_B)).transpose();
+        const double residual = point.offset_px - j.dot(total);
+        const double relative = residual / soft_px;
+        const double robust = 1.0 / (1.0 + relative * relative);
+        accumulate(H, g, j, residual, robust * robust / point.sigma2_px);
+        if (std::abs(residual) < 1.5 * soft_px) {
+          ++agree[static_cast<std::size_t>(point.feature)];
+          squares += residual * residual;
+        }
+      }
+      H = Matrix6d(H.selfadjointView<Eigen::Upper>());
+      const Eigen::LLT<Matrix6d> solver(H);
+      if (solver.info() != Eigen::Success) return result;
+      total += solver.solve(g);
+      if (step + 1 < kSteps) continue;
+      result.covariance = solver.solve(Matrix6d::Identity());
+      result.points = agree[0] + agree[1] + agree[2];
+      result.cones = (agree[1] >= 8 ? 1 : 0) | (agree[2] >= 8 ? 2 : 0);
+      result.rms_px = result.points > 0 ? std::sqrt(squares / result.points) : 0.0;
+    }
+    result.X_BC = geometry::moved(X_round, total);
+  }
+  result.good = result.points >= parameters.least_points && result.cones != 0;
+  return result;
+}
+
+}  // namespace cgsr::illumination

@@ -1,0 +1,152 @@
+#include "tools/lab/probe_room.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <numbers>
+#include <utility>
+
+#include "pipeline/geometry/pose.h"
+#include "platform/config/reader.h"
+
+namespace cgsr::lab {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRobotRadius_m = 0.35;
+constexpr double kTallest_m = 1.3;  // what hangs higher is in nobody's way
+constexpr double kLongest_m = 3.0;  // longer things are walls and floors
+
+std::array<double, 3> triple(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const ProbeRoomLight& light) {
+  const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "home.toml";
+  auto spec = config::read_file<sim::WorldSpec>(file, config::Missing::kTakesDefault);
+  if (!spec) return tl::unexpected(spec.error());
+  std::erase_if(spec->robot, [](const sim::RobotSpec& robot) { return !robot.has_board; });
+  if (spec->robot.empty()) return fail("home.toml: there is no robot with a probe board");
+  spec->object.clear();
+  spec->lamp.resize(1);
+  spec->lamp[0].radius_m = light.radius_m;
+  spec->lamp[0].globe_radius_m = 0.0;
+  spec->lamp[0].lumens = light.lumens;
+  spec->lamp[0].on = light.on;
+  spec->lamp[0].switch_name.clear();
+  if (light.second_p_WL) {
+    spec->lamp.push_back(spec->lamp[0]);
+    spec->lamp[1].name = "second lamp";
+    spec->lamp[1].position_m = triple(*light.second_p_WL);
+  }
+  auto world = sim::build_world(*spec, file);
+  if (!world) return tl::unexpected(world.error());
+  std::unique_ptr<ProbeRoom> room(new ProbeRoom(std::move(*world)));
+  const sim::CameraModel& camera = room->world_.scene.robots.front().camera;
+  auto photographer = sim::Photographer::make(room->world_.scene, camera, {});
+  if (!photographer) return tl::unexpected(photographer.error());
+  room->photographer_ = std::move(*photographer);
+  room->yuyv_.resize(std::size_t{2} * static_cast<std::size_t>(camera.width_px * camera.height_px));
+  return room;
+}
+
+sim::SceneState ProbeRoom::state(const sim::Pose& X_WR) const {
+  sim::SceneState state = sim::state_at(world_.scene, 0.0, {}, {X_WR});
+  for (std::size_t lamp = 0; lamp < state.lamps.size() && lamp < moved_.size(); ++lamp) {
+    if (moved_[lamp]) state.lamps[lamp].p_WL = *moved_[lamp];
+    if (!on_[lamp]) state.lamps[lamp].intensity_cd.setZero();
+    state.lamps[lamp].intensity_cd *= static_cast<float>(factor_);
+  }
+  return state;
+}
+
+ImageView ProbeRoom::shoot(const sim::Pose& X_WR, std::uint32_t seed, std::uint64_t number) {
+  const sim::RobotBody& body = world_.scene.robots.front();
+  const sim::Moment moment{state(X_WR), X_WR * sim::mount_of(body)};
+  const std::ptrdiff_t stride = std::ptrdiff_t{2} * body.camera.width_px;
+  photographer_->take({moment}, world_.sensor, {seed, number},
+                      {yuyv_.data(), body.camera.width_px, body.camera.height_px, stride});
+  return {yuyv_.data(), body.camera.width_px, body.camera.height_px, stride, PixelFormat::kYuyv};
+}
+
+std::vector<sim::ProbeShadow> ProbeRoom::truth(const sim::Pose& X_WR, int lamp) {
+  const sim::SceneState now = state(X_WR);
+  photographer_->renderer().move_to(now);
+  return sim::probe_shadows(photographer_->renderer(), now, X_WR * sim::mount_of(world_.scene.robots.front()), 0, lamp);
+}
+
+bool ProbeRoom::is_free(const sim::Pose& X_WR) const {
+  const Vector3d p = X_WR.translation();
+  if (p.x() < 0.45 || p.x() > 8.55 || p.y() < 0.45 || p.y() > 6.0) return false;
+  const Vector3d board = X_WR * Vector3d(0.6, 0.0, 0.0);
+  if (board.x() < 0.4 || board.x() > 8.6 || board.y() < 0.4 || board.y() > 6.0) return false;
+  for (const sim::Part& part : world_.scene.parts) {
+    if (part.figure >= 0 || !part.casts_shadow || part.mesh.position_m.empty()) continue;
+    Eigen::AlignedBox3f box;
+    for (const auto& corner : part.mesh.position_m) box.extend(corner);
+    if (static_cast<double>(box.min().z()) > kTallest_m || static_cast<double>(box.max().z()) < 0.02) continue;
+    if (static_cast<double>(box.sizes().maxCoeff()) > kLongest_m) continue;
+    const Eigen::Vector3f q = p.cast<float>();
+    const float dx = std::max({box.min().x() - q.x(), q.x() - box.max().x(), 0.0F});
+    const float dy = std::max({box.min().y() - q.y(), q.y() - box.max().y(), 0.0F});
+    if (std::hypot(static_cast<double>(dx), static_cast<double>(dy)) < kRobotRadius_m) return false;
+  }
+  return true;
+}
+
+std::optional<sim::Pose> ProbeRoom::standpoint(double angle_rad, Random& random) const {
+  const sim::ProbeBoard& board = world_.scene.robots.front().board;
+  const Vector3d lamp = moved_[0].value_or(p_WL());
+  const double flat_m = (lamp.z() - board.p_RB.z()) * std::tan(angle_rad);
+  for (int attempt = 0; attempt < 1000; ++attempt) {
+    const double around = random.uniform(0.0, 2.0 * std::numbers::pi);
+    const double heading = random.uniform(-std::numbers::pi, std::numbers::pi);
+    sim::Pose X_WR = sim::pose_at(Vector3d::Zero(), heading);
+    const Vector3d middle(lamp.x() + flat_m * std::cos(around), lamp.y() + flat_m * std::sin(around), 0.0);
+    X_WR.translation() = middle - X_WR.linear() * Vector3d(board.p_RB.x(), board.p_RB.y(), 0.0);
+    if (is_free(X_WR)) return X_WR;
+  }
+  return std::nullopt;
+}
+
+RobotCopy RobotCopy::measured(const ProbeRoom& room, std::uint32_t seed, double factor) {
+  sim::CalibrationErrors errors;
+  errors.focal = 0.002;
+  errors.centre_px = 0.64;  // 0.2 % of half an image
+  errors.mount_deg = 0.3;
+  errors.probe_m = 0.0005;
+  const auto copy = sim::calibrated_copy(room.world_.scene, 0, errors.times(factor), seed);
+  RobotCopy robot;
+  robot.X_RC = copy.X_RC;
+  robot.camera = {copy.camera.width_px, copy.camera.height_px, copy.camera.fx_px, copy.camera.fy_px, copy.camera.cx_px,
+                  copy.camera.cy_px,    copy.camera.k1,        copy.camera.k2,    copy.camera.p1,    copy.camera.p2,
+                  copy.camera.k3};
+  // The board's turn, which the copy does not draw: the whole board about its middle; and each probe's foot by itself.
+  Random random = Random(seed).fork(0xB0A);
+  const double turn = factor * 0.2;
+  robot.board.turn_deg = {turn * random.normal(), turn * random.normal(), turn * random.normal()};
+  const Vector3d w(robot.board.turn_deg[0], robot.board.turn_deg[1], robot.board.turn_deg[2]);
+  const Eigen::Matrix3d R = geometry::rotation_of(w * (std::numbers::pi / 180.0));
+  robot.board.position_m = triple(copy.board.p_RB);
+  robot.board.width_m = copy.board.width_m;
+  robot.board.depth_m = copy.board.depth_m;
+  robot.board.probes = static_cast<int>(copy.board.probes.size());
+  for (std::size_t i = 0; i < copy.board.probes.size(); ++i) {
+    const sim::MeasuredProbe& measured = copy.board.probes[i];
+    illumination::ProbeParameters& probe = i == 0 ? robot.board.left : robot.board.right;
+    const Vector3d off(errors.probe_m * factor * random.normal(), errors.probe_m * factor * random.normal(), 0.0);
+    // A cone that leans by its own error takes its tip along.
+    const double lean = turn * std::numbers::pi / 180.0 * (measured.p_RA - measured.p_RF).z();
+    const Vector3d leaning(lean * random.normal(), lean * random.normal(), 0.0);
+    probe.apex_m = triple(copy.board.p_RB + R * (measured.p_RA + leaning - copy.board.p_RB));
+    probe.foot_m = triple(copy.board.p_RB + R * (measured.p_RF + off - copy.board.p_RB));
+    probe.base_radius_m = measured.base_radius_m;
+  }
+  return robot;
+}
+
+}  // namespace cgsr::lab

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "hal/sim/calibration/calibrated_copy.h"
+#include "hal/sim/render/photographer.h"
+#include "hal/sim/render/truth_images.h"
+#include "hal/sim/worlds/world.h"
+#include "pipeline/illumination/probe_observation.h"
+#include "platform/error.h"
+#include "platform/image_view.h"
+#include "tools/lab/scenes/random.h"
+
+namespace cgsr::lab {
+
+/// What a lamp of the room is like, beside what its world says.
+struct ProbeRoomLight {
+  double radius_m = 0.05;
+  double lumens = 600.0;
+  bool on = true;
+  std::optional<Eigen::Vector3d> second_p_WL;  ///< a second lamp of the same kind.
+};
+
+/// The living room of config/worlds/home.toml with the lamp robot, its probe board and a ball-shaped lamp: chapter 5's shadows with their truth.
+class ProbeRoom {
+ public:
+  static Result<std::unique_ptr<ProbeRoom>> make(const ProbeRoomLight& light);
+
+  /// The image of a robot that stands at X_WR. Valid until the next one.
+  ImageView shoot(const sim::Pose& X_WR, std::uint32_t seed, std::uint64_t number);
+
+  /// Where the shadows of the tips truly fall.
+  std::vector<sim::ProbeShadow> truth(const sim::Pose& X_WR, int lamp = 0);
+
+  /// Can a robot stand there: within the walls and in no furniture?
+  [[nodiscard]] bool is_free(const sim::Pose& X_WR) const;
+
+  /// A standpoint at which the light comes to the middle of the board at this angle from the vertical, from anywhere around.
+  [[nodiscard]] std::optional<sim::Pose> standpoint(double angle_rad, Random& random) const;
+
+  [[nodiscard]] Eigen::Vector3d p_WL(int lamp = 0) const { return world_.scene.lamps[static_cast<std::size_t>(lamp)].p_WL; }
+  void move_lamp(int lamp, const Eigen::Vector3d& p_WL) { moved_[static_cast<std::size_t>(lamp)] = p_WL; }
+  void switch_lamp(int lamp, bool on) { on_[static_cast<std::size_t>(lamp)] = on; }
+  void scale_light(double factor) { factor_ = factor; }
+
+ private:
+  explicit ProbeRoom(sim::World world) : world_(std::move(world)) {}
+  sim::SceneState state(const sim::Pose& X_WR) const;
+
+  sim::World world_;
+  std::unique_ptr<sim::Photographer> photographer_;
+  std::vector<std::uint8_t> yuyv_;
+  std::array<std::optional<Eigen::Vector3d>, 2> moved_;
+  std::array<bool, 2> on_{true, true};
+  double factor_ = 1.0;
+
+  friend struct RobotCopy;
+};
+
+/// What the vision is told of the robot: measured with the stated errors.
+struct RobotCopy {
+  illumination::BoardParameters board;
+  sim::Pose X_RC = sim::Pose::Identity();
+  geometry::Camera camera;
+
+  /// Board and probes off by N(0, 0.5 mm) and 0.2 degrees, intrinsics by 0.2 %, the mount by 0.3 degrees about each axis; all times `factor`.
+  static RobotCopy measured(const ProbeRoom& room, std::uint32_t seed, double factor = 1.0);
+};
+
+}  // namespace cgsr::lab
