@@ -38,7 +38,7 @@ struct BoardParameters {
   double depth_m = 0.34;
   ProbeParameters left;
   ProbeParameters right{{0.45, -0.20, 1.0}, {0.45, -0.20, 0.9}, 0.02};
-  double place_sigma_m = 0.0007;
+  double place_sigma_m = 0.0006;
   double turn_sigma_deg = 0.2;
   double mount_sigma_m = 0.005;
   double mount_sigma_deg = 0.4;

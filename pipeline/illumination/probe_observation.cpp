@@ -57,9 +57,9 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
       observation.missing |= 1 << i;
       continue;
     }
-    observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC);
+    observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC, brightest);
     shadows += observation.probe[i].count;
-    saturated = std::max(saturated, finders_[i].share_brighter_than(brightest));
+    saturated = std::max(saturated, finders_[i].share_saturated());
   }
   observation.status = shadows > 0                   ? ObservationStatus::kSeen
                        : saturated > kMostSaturated ? ObservationStatus::kSaturated

@@ -19,8 +19,9 @@ using geometry::Vector6d;
 constexpr int kMostPoints = 320;
 constexpr int kMostReach_px = 16;
 constexpr double kNoise_px = 0.15;   // of one point, out of pixel noise
-constexpr double kSoft_px = 0.8;     // beyond it a point counts less: half at this distance
-constexpr int kRounds = 3;           // of looking for edges
+// What a round of looking for edges takes for far off: the first must bring edges in from the mount's error, clutter and all.
+constexpr std::array kSoft_px{6.0, 2.5, 0.8, 0.8};
+constexpr int kRounds = 4;
 constexpr int kSteps = 2;            // of Gauss-Newton on what one round found
 
 // A place on an expected line, and where its edge was found.
@@ -190,15 +191,16 @@ Registration register_board(const Board& board, const RegistrationParameters& pa
   Vector6d prior;
   prior.head<3>().setConstant(1.0 / (board.mount_sigma_m * board.mount_sigma_m));
   prior.tail<3>().setConstant(1.0 / (board.mount_sigma_rad * board.mount_sigma_rad));
-  const int first = start_is_good ? 1 : 0;
+  const int first = start_is_good ? 2 : 0;
   for (int round = first; round < kRounds; ++round) {
-    const double reach_px = round == 0 ? parameters.first_reach_px : parameters.next_reach_px;
+    const double reach_px = round == 0 ? parameters.first_reach_px : round == 1 ? 0.5 * (parameters.first_reach_px + parameters.next_reach_px)
+                                                                            : parameters.next_reach_px;
     const int reach = std::min(kMostReach_px, static_cast<int>(std::ceil(reach_px)));
     const geometry::Pose X_round = result.X_BC;
     const BoardView view(board.camera, X_round);
     const int count = Collector(board, parameters, image, view, reach, points).collect();
     if (count < parameters.least_points) return result;
-    const double soft_px = round == 0 ? 3.0 * kSoft_px : kSoft_px;
+    const double soft_px = kSoft_px[static_cast<std::size_t>(round)];
     Vector6d total = Vector6d::Zero();
     for (int step = 0; step < kSteps; ++step) {
       Matrix6d H = prior.asDiagonal();

@@ -22,8 +22,11 @@ constexpr double kBlur_px = 0.55;       // of lens, pixel and reading between pi
 constexpr double kStartOfLine_m = 0.003;  // nearer to the base its own contact is seen
 constexpr double kEndOfLine = 0.9;      // of the way to the tip's shadow, which is soft all over
 constexpr int kAcross = 9;              // samples across a line
+constexpr int kLeastAcross = 5;         // of them to be seen
+constexpr int kLeastSamples = 24;       // for a fit at all
 constexpr int kMostPlaces = 14;         // along a line
 constexpr double kCorrelation = 2.5;    // samples read between pixels are not independent
+constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge explains
 constexpr double kRadiusSigma_m = 0.0003;
 
 // The unknowns of the fit.
@@ -106,6 +109,48 @@ void ShadowFinder::look_around(const LumaView& image, const BoardView& view) {
   }
 }
 
+void ShadowFinder::take_plane_away() {
+  // The board's brightness is nearly a plane; places darker than it count less and less.
+  Vector3d plane(0.0, 0.0, 0.0);
+  double soft = 40.0;
+  for (int round = 0; round < 4; ++round) {
+    Eigen::Matrix3d H = Eigen::Matrix3d::Identity() * 1e-3;
+    Vector3d g = Vector3d::Zero();
+    for (std::size_t r = 0; r < kRays; ++r) {
+      for (std::size_t k = 0; k < kRings; ++k) {
+        if (valid_[r][k] == 0.0F) continue;
+        const Vector2d q = grid_[r * kRings + k] / probe_.radius_m;
+        const double value = static_cast<double>(value_[r][k]);
+        const double residual = round == 0 ? 0.0 : value - (plane[0] + plane[1] * q.x() + plane[2] * q.y());
+        const double relative = residual / (residual < 0.0 ? soft : 3.0 * soft);
+        const double w = 1.0 / (1.0 + relative * relative);
+        const Vector3d j(1.0, q.x(), q.y());
+        H(0, 0) += w;
+        H(0, 1) += w * j[1];
+        H(0, 2) += w * j[2];
+        H(1, 1) += w * j[1] * j[1];
+        H(1, 2) += w * j[1] * j[2];
+        H(2, 2) += w * j[2] * j[2];
+        g += w * value * j;
+      }
+    }
+    H(1, 0) = H(0, 1);
+    H(2, 0) = H(0, 2);
+    H(2, 1) = H(1, 2);
+    H(1, 1) += 20.0;  // few places do not make a slope
+    H(2, 2) += 20.0;
+    plane = H.ldlt().solve(g);
+    soft = round == 0 ? 6.0 : 2.5;
+  }
+  level_ = plane[0];
+  for (std::size_t r = 0; r < kRays; ++r) {
+    for (std::size_t k = 0; k < kRings; ++k) {
+      const Vector2d q = grid_[r * kRings + k] / probe_.radius_m;
+      value_[r][k] -= valid_[r][k] * static_cast<float>(plane[0] + plane[1] * q.x() + plane[2] * q.y());
+    }
+  }
+}
+
 ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& tried, int tried_count) const {
   Candidate best;
   for (int ray = 0; ray < kRays; ++ray) {
@@ -148,7 +193,7 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
       best.score = static_cast<double>(explained);
       best.ray = ray;
       best.contrast = static_cast<double>(-covariance / variance);
-      best.level = static_cast<double>(mean) + best.contrast * static_cast<double>(m / n);
+      best.level = level_;
       const double angle = 2.0 * kPi * ray / kRays;
       best.tip_shadow = probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
     }
@@ -181,7 +226,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         {outline.touch[side].x() + 0.4 * reach * line.x(), outline.touch[side].y() + 0.4 * reach * line.y(), 0.0});
     if (!middle.in_front) continue;
     const double line_px = (middle.by_point.leftCols<2>() * line).norm() * (reach - begin);
-    const int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 4, kMostPlaces);
+    const int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostPlaces);
     for (int i = 0; i < places; ++i) {
       const double along = begin + (reach - begin) * (i + 0.5) / places;
       const Vector2d centre = outline.touch[side] + along * line;
@@ -203,7 +248,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         sample.value = image.at(pixel.x(), pixel.y());
         sample.place = place;
       }
-      if (count - before < 2 * kAcross / 3) {
+      if (count - before < kLeastAcross) {
         count = before;
         continue;
       }
@@ -225,8 +270,9 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   for (int choice = 0; choice < kChoices; ++choice) {
     const bool last = choice + 1 == kChoices || (choice > 0 && moved_m < 0.0008);
     const Vector2d chosen_at = x.head<2>();
-    count = choose_samples(image, view, chosen_at, choice == 0 ? 0.004 : 0.001);
-    if (count < 4 * kAcross) return false;
+    count = choose_samples(image, view, chosen_at,
+                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001);
+    if (count < kLeastSamples) return false;
     const int steps = choice == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {
       const Vector2d tip = x.head<2>();
@@ -349,6 +395,8 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   if (flat > probe_.p_BA.z() * std::tan(parameters_.largest_angle_deg * kPi / 180.0)) return false;
   shadow.contrast = x[kDark];
   shadow.rms = std::sqrt(variance);
+  const Normal covariance = H.inverse();
+  if (shadow.contrast < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
   if (shadow.contrast < parameters_.least_contrast || shadow.contrast < parameters_.least_share * x[kLevel]) return false;
   // Do the places along the lines show it, each by itself?
   std::array<int, 2> shown{};
@@ -377,7 +425,6 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   if (shadow.lines == 0 || shadow.rms > std::max(4.0, 0.35 * shadow.contrast)) return false;
   shadow.support = static_cast<double>(all_shown) / std::max(1, all_asked);
   shadow.p_BS = x.head<2>();
-  const Normal covariance = H.inverse();
   shadow.covariance = covariance.topLeftCorner<2, 2>();
   const Vector3d p_BS(x[kTipX], x[kTipY], 0.0);
   const auto d = view.derivative(p_BS);
@@ -411,7 +458,7 @@ double ShadowFinder::share_brighter_than(double level) const {
   return seen_places > 0 ? static_cast<double>(brighter) / seen_places : 0.0;
 }
 
-ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Pose& X_BC) {
+ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Pose& X_BC, double saturation) {
   Found found;
   const BoardView view(board_.camera, X_BC);
   for (int i = 0; i < board_.probes; ++i) {
@@ -419,12 +466,14 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view.p_BC(), probe.p_BA));
   }
   look_around(image, view);
+  saturated_ = share_brighter_than(saturation);
+  take_plane_away();
   std::array<int, 4> tried{};
   int tried_count = 0;
   while (tried_count < 4 && found.count < kMostShadows) {
     const Candidate candidate = best_candidate(tried, tried_count);
-    if (candidate.ray < 0 || candidate.contrast < 0.6 * parameters_.least_contrast ||
-        candidate.contrast < 0.6 * parameters_.least_share * candidate.level) {
+    if (candidate.ray < 0 || candidate.score < kLeastScore || candidate.contrast < 0.5 * parameters_.least_contrast ||
+        candidate.contrast < 0.5 * parameters_.least_share * level_) {
       break;
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;

@@ -14,8 +14,8 @@ namespace cgsr::illumination {
 
 struct ShadowParameters {
   double lamp_radius_m = 0.05;
-  double least_contrast = 4.0;
-  double least_share = 0.04;
+  double least_contrast = 2.0;
+  double least_share = 0.015;
   double least_support = 0.7;
   double largest_angle_deg = 76.0;
   double spacing_px = 5.0;
@@ -63,10 +63,11 @@ class ShadowFinder {
     int count = 0;
   };
   /// \param X_BC  the camera against the board, registered in this image.
-  Found find(const LumaView& image, const geometry::Pose& X_BC);
+  /// \param saturation  the brightest level that the image can hold.
+  Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
 
-  /// Of the places around the probe that the last image showed, the share that is brighter: of a saturated board.
-  [[nodiscard]] double share_brighter_than(double level) const;
+  /// Of the places around the probe that the last image showed, the share that has no level left.
+  [[nodiscard]] double share_saturated() const { return saturated_; }
 
  private:
   static constexpr int kRings = 8;
@@ -95,6 +96,8 @@ class ShadowFinder {
     int count = 0;
   };
 
+  [[nodiscard]] double share_brighter_than(double level) const;
+  void take_plane_away();
   void look_around(const LumaView& image, const BoardView& view);
   [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count) const;
   [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate,
@@ -121,6 +124,8 @@ class ShadowFinder {
   std::array<Sample, kMostSamples> samples_{};
   std::array<Place, 64> places_{};
   double m_per_px_ = 1e-3;
+  double level_ = 0.0;  // of the board at the foot
+  double saturated_ = 0.0;
 };
 
 }  // namespace cgsr::illumination
