@@ -65,12 +65,13 @@ Result<Board> make_board(const BoardParameters& parameters, const geometry::Pose
       return fail(fmt::format("probes.board.{}.foot_m = {}: not on the board", name, words(vector(from.foot_m))));
     }
     if (view.p_BC().z() < probe.p_BA.z() + 0.01) {
-      return fail(fmt::format("the camera is {:.3f} m above the board, and the {} probe {:.3f} m high: it does not look down on it",
-                              view.p_BC().z(), name, probe.p_BA.z()));
+      return fail(fmt::format(
+          "the camera is {:.3f} m above the board, and the {} probe {:.3f} m high: it does not look down on it",
+          view.p_BC().z(), name, probe.p_BA.z()));
     }
     if (!in_image(probe.p_BA) || !in_image(foot_B)) {
-      return fail(fmt::format("the {} probe is not in the camera's view: camera, mount and board do not belong together",
-                              name));
+      return fail(fmt::format(
+          "the {} probe is not in the camera's view: camera, mount and board do not belong together", name));
     }
   }
   return board;
@@ -152,7 +153,7 @@ Outline outline_of(const Vector2d& foot, double radius_m, const Vector2d& tip_sh
   if (distance <= radius_m * 1.001) return outline;
   const Vector2d u = along / distance;
   const Vector2d left(-u.y(), u.x());
-  const double s = radius_m / distance;        // sine of the half opening
+  const double s = radius_m / distance;  // sine of the half opening
   const double c = std::sqrt(1.0 - s * s);
   for (std::size_t side = 0; side < 2; ++side) {
     const double sign = side == 0 ? 1.0 : -1.0;

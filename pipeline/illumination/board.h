@@ -65,7 +65,7 @@ struct BoardParameters {
 
 /// A cone in the board's frame B: origin in the middle of the upper face, z up out of it.
 struct Probe {
-  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();   ///< tip.
+  Eigen::Vector3d p_BA = Eigen::Vector3d::Zero();    ///< tip.
   Eigen::Vector2d foot_B = Eigen::Vector2d::Zero();  ///< middle of the base, on the board's plane.
   double radius_m = 0.0;
 };
@@ -75,8 +75,8 @@ struct Board {
   geometry::Pose X_RB = geometry::Pose::Identity();
   geometry::Pose X_BC = geometry::Pose::Identity();  ///< by the camera's mount: the prior of every registration.
   geometry::Camera camera;
-  double width_m = 0.0;  ///< along B's y.
-  double depth_m = 0.0;  ///< along B's x.
+  double width_m = 0.0;                  ///< along B's y.
+  double depth_m = 0.0;                  ///< along B's x.
   std::array<Probe, kMostProbes> probe;  ///< left, right.
   int probes = 0;
   double place_sigma_m = 0.0;
@@ -87,8 +87,7 @@ struct Board {
 
 /// \param X_RC  the camera's mount.
 /// \return what cannot be: no probe, a tip below its base, a foot off the board or the board, a probe that the camera does not see.
-Result<Board> make_board(const BoardParameters& parameters, const geometry::Pose& X_RC,
-                         const geometry::Camera& camera);
+Result<Board> make_board(const BoardParameters& parameters, const geometry::Pose& X_RC, const geometry::Camera& camera);
 
 /// A camera against the board, ready to project many points: with the derivative of the pixel.
 class BoardView {

@@ -90,7 +90,8 @@ Fit fit_lamp(const Board& board, double height_m, double height_sigma_m,
 }
 
 Vector3d start_from(const Board& board, double height_m, const ProbeShadow& shadow, std::size_t probe) {
-  const double z = (board.X_RB.inverse() * Vector3d(board.X_RB.translation().x(), board.X_RB.translation().y(), height_m)).z();
+  const double z =
+      (board.X_RB.inverse() * Vector3d(board.X_RB.translation().x(), board.X_RB.translation().y(), height_m)).z();
   return board.X_RB * on_ray(shadow.p_BS, board.probe[probe].p_BA, z);
 }
 
@@ -116,8 +117,9 @@ Result<void> check_lamp(const Board& board, const LampParameters& parameters) {
   for (int i = 0; i < board.probes; ++i) {
     const double tip_m = (board.X_RB * board.probe[static_cast<std::size_t>(i)].p_BA).z();
     if (parameters.height_m < tip_m + kLeastAboveTip_m) {
-      return fail(fmt::format("lamp.height_m = {}: a probe's tip is {:.3f} m above the floor, expected a lamp at least {} m higher",
-                              parameters.height_m, tip_m, kLeastAboveTip_m));
+      return fail(fmt::format(
+          "lamp.height_m = {}: a probe's tip is {:.3f} m above the floor, expected a lamp at least {} m higher",
+          parameters.height_m, tip_m, kLeastAboveTip_m));
     }
   }
   return {};
@@ -216,8 +218,8 @@ LampEstimates locate_lamps(const Board& board, const LampParameters& parameters,
     for (int l = 0; l < left; ++l) {
       for (int r = 0; r < right; ++r) {
         if (used[0][static_cast<std::size_t>(l)] || used[1][static_cast<std::size_t>(r)]) continue;
-        const auto estimate = estimate_lamp(board, parameters, {shadow_at(0, l), shadow_at(1, r)},
-                                            observation.registration.covariance);
+        const auto estimate =
+            estimate_lamp(board, parameters, {shadow_at(0, l), shadow_at(1, r)}, observation.registration.covariance);
         if (estimate.status != LampStatus::kFound) {
           why = estimate.status;
           continue;

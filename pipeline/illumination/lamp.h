@@ -54,8 +54,8 @@ struct LampEstimate {
   Eigen::Vector3d p_RL = Eigen::Vector3d::Zero();
   /// Of pixel noise, registration and the stated errors of board and probes; of one line, large along the plane.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  int probes = 0;  ///< bit i: probe i saw its shadow.
-  int lines = 0;   ///< of all shadows together.
+  int probes = 0;          ///< bit i: probe i saw its shadow.
+  int lines = 0;           ///< of all shadows together.
   double angle_rad = 0.0;  ///< of the light from the vertical, at the probes.
 
   /// Both shadows: the lamp where their rays come nearest, no height assumed.

@@ -17,9 +17,10 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kGate = 16.0;          // of one shadow, 2 degrees of freedom: 3 in 10,000 are further away
-constexpr double kRegistrationNoise = 0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
-constexpr double kStartSigma_m = 6.0;   // along the floor, before the first shadow
+constexpr double kGate = 16.0;  // of one shadow, 2 degrees of freedom: 3 in 10,000 are further away
+constexpr double kRegistrationNoise =
+    0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
+constexpr double kStartSigma_m = 6.0;  // along the floor, before the first shadow
 constexpr double kFadedSigma_m = 0.5;
 
 Matrix3d cross(const Vector3d& v) {
@@ -30,8 +31,7 @@ Matrix3d cross(const Vector3d& v) {
 
 }  // namespace
 
-LampFilter::LampFilter(const Board& board, const LampParameters& parameters)
-    : board_(board), parameters_(parameters) {}
+LampFilter::LampFilter(const Board& board, const LampParameters& parameters) : board_(board), parameters_(parameters) {}
 
 LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const {
   Prediction prediction;
@@ -143,7 +143,8 @@ bool LampFilter::should_show(const Track& track, std::size_t probe, const geomet
 LampChange LampFilter::update(const ProbeObservation& observation, const geometry::Pose& X_WR,
                               const geometry::Matrix6d& pose_covariance) {
   LampChange change;
-  if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow) return change;
+  if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow)
+    return change;
   geometry::Matrix6d pose = pose_covariance;
   const double place = parameters_.pose_sigma_m * parameters_.pose_sigma_m;
   const double turn = parameters_.pose_sigma_deg * std::numbers::pi / 180.0;
@@ -165,8 +166,8 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
         if (own[static_cast<std::size_t>(t)][probe] != nullptr) continue;
         for (int k = 0; k < found.count; ++k) {
           if (taken[probe][static_cast<std::size_t>(k)]) continue;
-          const double d = distance(track_[static_cast<std::size_t>(t)], probe, found.shadow[static_cast<std::size_t>(k)],
-                                    X_WR, pose, registration);
+          const double d = distance(track_[static_cast<std::size_t>(t)], probe,
+                                    found.shadow[static_cast<std::size_t>(k)], X_WR, pose, registration);
           if (d < nearest) nearest = d, track_of = t, shadow_of_track = k;
         }
       }

@@ -61,9 +61,20 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
     shadows += observation.probe[i].count;
     saturated = std::max(saturated, finders_[i].share_saturated());
   }
-  observation.status = shadows > 0                   ? ObservationStatus::kSeen
+  bool whole = false;
+  for (const auto& found : observation.probe) {
+    for (int k = 0; k < found.count; ++k) whole = whole || found.shadow[static_cast<std::size_t>(k)].lines == 2;
+  }
+  for (std::size_t i = 0; i < finders_.size() && !whole; ++i) {
+    if ((observation.missing & (1 << i)) != 0) continue;
+    const auto strip = finders_[i].find_strip(luma, observation.registration.X_BC);
+    if (strip.count == 0) continue;
+    shadows += strip.count;
+    observation.probe[i] = strip;
+  }
+  observation.status = shadows > 0                  ? ObservationStatus::kSeen
                        : saturated > kMostSaturated ? ObservationStatus::kSaturated
-                                                     : ObservationStatus::kNoShadow;
+                                                    : ObservationStatus::kNoShadow;
   return observation;
 }
 

@@ -18,27 +18,29 @@ using geometry::Vector6d;
 
 constexpr int kMostPoints = 320;
 constexpr int kMostReach_px = 16;
-constexpr double kNoise_px = 0.15;   // of one point, out of pixel noise
+constexpr double kShare = 0.5;      // of what was measured wrongly, what one line does not share with its neighbours
+constexpr double kNoise_px = 0.15;  // of one point, out of pixel noise
 // What a round of looking for edges takes for far off: the first must bring edges in from the mount's error, clutter and all.
 constexpr std::array kSoft_px{6.0, 2.5, 0.8, 0.8};
 constexpr int kRounds = 4;
-constexpr int kSteps = 2;            // of Gauss-Newton on what one round found
+constexpr int kSteps = 2;  // of Gauss-Newton on what one round found
 
 // A place on an expected line, and where its edge was found.
 struct EdgePoint {
   Vector3d p_B;
-  Vector2d normal;      // in the image, unit
-  double offset_px;     // of the edge along the normal, from where it was expected
+  Vector2d normal;   // in the image, unit
+  double offset_px;  // of the edge along the normal, from where it was expected
   Vector2d expected;
-  double sigma2_px;     // what it tells, its line's common error included
-  int feature;          // board 0, cones 1 and 2
+  double sigma2_px;  // what it tells, its line's common error included
+  int feature;       // board 0, cones 1 and 2
 };
 
 // Brightness across an expected line, at whole pixels; the strongest change within reach, to a fraction of a pixel.
 bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal, int reach, double least_contrast,
                double& offset_px) {
   const Vector2d far = (reach + 1.0) * normal;
-  if (!image.holds(at.x() - far.x(), at.y() - far.y()) || !image.holds(at.x() + far.x(), at.y() + far.y())) return false;
+  if (!image.holds(at.x() - far.x(), at.y() - far.y()) || !image.holds(at.x() + far.x(), at.y() + far.y()))
+    return false;
   std::array<float, 2 * kMostReach_px + 3> value;
   const int count = 2 * reach + 3;
   for (int i = 0; i < count; ++i) {
@@ -151,7 +153,7 @@ class Collector {
     point.feature = feature;
     // How many pixels the calibration's own error is here.
     const double px_per_m = d.by_point.norm() / std::numbers::sqrt2;
-    point.sigma2_px = board_.place_sigma_m * px_per_m;
+    point.sigma2_px = kShare * board_.place_sigma_m * px_per_m;
     ++count_;
   }
 
@@ -193,8 +195,9 @@ Registration register_board(const Board& board, const RegistrationParameters& pa
   prior.tail<3>().setConstant(1.0 / (board.mount_sigma_rad * board.mount_sigma_rad));
   const int first = start_is_good ? 2 : 0;
   for (int round = first; round < kRounds; ++round) {
-    const double reach_px = round == 0 ? parameters.first_reach_px : round == 1 ? 0.5 * (parameters.first_reach_px + parameters.next_reach_px)
-                                                                            : parameters.next_reach_px;
+    const double reach_px = round == 0   ? parameters.first_reach_px
+                            : round == 1 ? 0.5 * (parameters.first_reach_px + parameters.next_reach_px)
+                                         : parameters.next_reach_px;
     const int reach = std::min(kMostReach_px, static_cast<int>(std::ceil(reach_px)));
     const geometry::Pose X_round = result.X_BC;
     const BoardView view(board.camera, X_round);

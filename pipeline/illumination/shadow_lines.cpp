@@ -14,19 +14,24 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::array kRingRadii{1.2, 1.4, 1.65, 1.95, 2.35, 2.9, 3.6, 4.5};            // of the base's radius
+constexpr std::array kRingRadii{1.2, 1.4, 1.65, 1.95, 2.35, 2.9, 3.6, 4.5};               // of the base's radius
 constexpr std::array kLengthFactors{1.5, 1.8, 2.2, 2.7, 3.3, 4.2, 5.5, 7.5, 11.0, 18.0};  // likewise, from the foot
 constexpr double kBoardMargin_m = 0.003;
-constexpr double kConeMargin_m = 0.0025;
-constexpr double kBlur_px = 0.55;       // of lens, pixel and reading between pixels
+constexpr double kConeMargin_m = 0.0013;
+constexpr double kBlur_px = 0.55;         // of lens, pixel and reading between pixels
 constexpr double kStartOfLine_m = 0.003;  // nearer to the base its own contact is seen
-constexpr double kEndOfLine = 0.9;      // of the way to the tip's shadow, which is soft all over
-constexpr int kAcross = 9;              // samples across a line
-constexpr int kLeastAcross = 5;         // of them to be seen
-constexpr int kLeastSamples = 24;       // for a fit at all
-constexpr int kMostPlaces = 14;         // along a line
-constexpr double kCorrelation = 2.5;    // samples read between pixels are not independent
+constexpr double kEndOfLine = 0.9;        // of the way to the tip's shadow, which is soft all over
+constexpr int kAcross = 9;                // samples across a line
+constexpr int kLeastAcross = 5;           // of them to be seen
+constexpr int kLeastSamples = 24;         // for a fit at all
+constexpr int kMostPlaces = 14;           // along a line
+constexpr double kCorrelation = 1.6;      // samples read between pixels are not independent
 constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge explains
+constexpr int kStripSteps = 24;           // beside a cone's outline
+constexpr double kStripStep_m = 0.0025;
+constexpr double kStripSigma_m = 0.002;  // of the tip's shadow by where the strip ends
+constexpr double kEndOfStrip = 1.1;      // the tip is most of what is seen
+constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
 constexpr double kRadiusSigma_m = 0.0003;
 
 // The unknowns of the fit.
@@ -84,7 +89,8 @@ float ShadowFinder::hidden_share(const Vector2d& from_foot, const Outline& outli
 }
 
 bool ShadowFinder::seen(const Vector2d& p_B) const {
-  if (std::abs(p_B.x()) > board_.depth_m / 2 - kBoardMargin_m || std::abs(p_B.y()) > board_.width_m / 2 - kBoardMargin_m)
+  if (std::abs(p_B.x()) > board_.depth_m / 2 - kBoardMargin_m ||
+      std::abs(p_B.y()) > board_.width_m / 2 - kBoardMargin_m)
     return false;
   for (int i = 0; i < board_.probes; ++i) {
     const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
@@ -169,7 +175,7 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
         v += value_[k][ring];
       }
     }
-    if (n < 40.0F) continue;
+    if (n < 30.0F) continue;
     const float mean = v / n;
     for (int length = 0; length < kLengths; ++length) {
       float m = 0.0F;
@@ -185,7 +191,7 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
         }
       }
       const float variance = mm - m * m / n;
-      if (m < 3.0F || variance < 1.5F) continue;
+      if (m < 1.5F || variance < 0.8F) continue;
       const float covariance = mv - m * mean;
       if (covariance >= 0.0F) continue;  // a shadow is dark
       const float explained = covariance * covariance / variance;
@@ -195,14 +201,70 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
       best.contrast = static_cast<double>(-covariance / variance);
       best.level = level_;
       const double angle = 2.0 * kPi * ray / kRays;
-      best.tip_shadow = probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
+      best.tip_shadow =
+          probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
     }
   }
   return best;
 }
 
+// Most of a shadow that falls away from the camera is hidden by its own cone; what is left is a dark strip beside the cone's outline, too narrow
+// for the rings.
+ShadowFinder::Candidate ShadowFinder::beside_cone(const LumaView& image, const BoardView& view,
+                                                  std::size_t side) const {
+  Candidate candidate;
+  const Outline& outline = behind_[static_cast<std::size_t>(index_)];
+  if (!outline.valid) return candidate;
+  const Vector2d tip = cast(view.p_BC(), probe_.p_BA);
+  const Vector2d along = (tip - outline.touch[side]).normalized();
+  const Vector2d outward = -outline.inward[side];
+  const auto value_at = [&](double tau, double out, float& value) {
+    const Vector2d p_B = outline.touch[side] + tau * along + out * outward;
+    const auto pixel = view.pixel({p_B.x(), p_B.y(), 0.0});
+    if (!seen(p_B) || !pixel.in_front || !image.holds(pixel.at.x(), pixel.at.y(), 1.0)) return false;
+    value = image.at(pixel.at.x(), pixel.at.y());
+    return true;
+  };
+  int dark_steps = 0;
+  double darkest = 0.0;
+  double end_m = 0.0;
+  double level = 0.0;
+  int gap = 0;
+  for (int step = 0; step < kStripSteps && (gap < 3 || dark_steps < 2); ++step) {
+    const double tau = (step + 1.5) * kStripStep_m;
+    float near = 0.0F;
+    float next = 0.0F;
+    float far = 0.0F;
+    float further = 0.0F;
+    if (!value_at(tau, kConeMargin_m + 0.0004, near) || !value_at(tau, kConeMargin_m + 0.0012, next) ||
+        !value_at(tau, 0.018, far) || !value_at(tau, 0.024, further)) {
+      ++gap;
+      continue;
+    }
+    const double beside = 0.5 * static_cast<double>(far + further);
+    const double darker = beside - 0.5 * static_cast<double>(near + next);
+    if (darker < std::max(4.0, 2.0 * parameters_.least_share * beside)) {
+      ++gap;
+      continue;
+    }
+    gap = 0;
+    ++dark_steps;
+    darkest = std::max(darkest, darker);
+    level = beside;
+    end_m = tau;
+  }
+  if (dark_steps < 2 || gap < 2) return candidate;  // none, or one without an end
+  candidate.ray = 0;
+  candidate.strip = true;
+  candidate.score = kLeastScore;
+  candidate.contrast = 1.2 * darkest;
+  candidate.level = level;
+  candidate.tip_shadow = outline.touch[side] + (end_m + kStripStep_m) * along + 0.002 * outward;
+  return candidate;
+}
+
 int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, const Vector2d& tip_shadow,
-                                 double slack_m) {
+                                 double slack_m, bool strip) {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, tip_shadow);
   if (!outline.valid) return 0;
   int count = 0;
@@ -212,7 +274,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
     const Vector2d line = tip_shadow - outline.touch[side];
     const double length = line.norm();
     // The part of the line that lies on the board, so that a long shadow's samples do not fall beside it.
-    double reach = kEndOfLine;
+    double reach = strip ? kEndOfStrip : kEndOfLine;
     for (int axis = 0; axis < 2; ++axis) {
       const double edge = (axis == 0 ? board_.depth_m : board_.width_m) / 2 - kBoardMargin_m;
       const double end = outline.touch[side][axis] + line[axis];
@@ -248,7 +310,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         sample.value = image.at(pixel.x(), pixel.y());
         sample.place = place;
       }
-      if (count - before < kLeastAcross) {
+      if (count - before < (strip ? 3 : kLeastAcross)) {
         count = before;
         continue;
       }
@@ -271,8 +333,9 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
     const bool last = choice + 1 == kChoices || (choice > 0 && moved_m < 0.0008);
     const Vector2d chosen_at = x.head<2>();
     count = choose_samples(image, view, chosen_at,
-                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001);
-    if (count < kLeastSamples) return false;
+                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001,
+                           candidate.strip);
+    if (count < (candidate.strip ? kLeastSamples / 2 : kLeastSamples)) return false;
     const int steps = choice == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {
       const Vector2d tip = x.head<2>();
@@ -369,7 +432,9 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
       H(kRadius, kRadius) += 1.0 / (kRadiusSigma_m * kRadiusSigma_m);
       g[kRadius] += (probe_.radius_m - x[kRadius]) / (kRadiusSigma_m * kRadiusSigma_m);
       // Very weak, for what the samples cannot tell: with one line the place along it.
-      const double weak = 1.0 / (0.5 * 0.5);
+      const double known_m = candidate.strip ? kStripSigma_m : 0.5;
+      const double weak = 1.0 / (known_m * known_m);
+      g.head<2>() += weak * (candidate.tip_shadow - tip);
       H(kTipX, kTipX) += weak;
       H(kTipY, kTipY) += weak;
       H(kSlopeX, kSlopeX) += 1.0 / (100.0 * 100.0);
@@ -396,8 +461,21 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   shadow.contrast = x[kDark];
   shadow.rms = std::sqrt(variance);
   const Normal covariance = H.inverse();
-  if (shadow.contrast < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
-  if (shadow.contrast < parameters_.least_contrast || shadow.contrast < parameters_.least_share * x[kLevel]) return false;
+  if (!candidate.strip && shadow.contrast < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
+  if (shadow.contrast < parameters_.least_contrast || shadow.contrast < parameters_.least_share * x[kLevel])
+    return false;
+  shadow.p_BS = x.head<2>();
+  shadow.covariance = covariance.topLeftCorner<2, 2>();
+  const Vector3d p_BS(x[kTipX], x[kTipY], 0.0);
+  const auto d = view.derivative(p_BS);
+  if (!d.in_front) return false;
+  shadow.by_pose = -d.by_point.leftCols<2>().inverse() * view.by_pose(d, p_BS);
+  if (candidate.strip) {
+    shadow.lines = 2;
+    shadow.support = 1.0;
+    return shadow.rms < std::max(1.8, 0.1 * shadow.contrast) &&
+           (shadow.p_BS - candidate.tip_shadow).norm() < 3.0 * kStripSigma_m;
+  }
   // Do the places along the lines show it, each by itself?
   std::array<int, 2> shown{};
   std::array<int, 2> asked{};
@@ -424,12 +502,6 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   }
   if (shadow.lines == 0 || shadow.rms > std::max(4.0, 0.35 * shadow.contrast)) return false;
   shadow.support = static_cast<double>(all_shown) / std::max(1, all_asked);
-  shadow.p_BS = x.head<2>();
-  shadow.covariance = covariance.topLeftCorner<2, 2>();
-  const Vector3d p_BS(x[kTipX], x[kTipY], 0.0);
-  const auto d = view.derivative(p_BS);
-  if (!d.in_front) return false;
-  shadow.by_pose = -d.by_point.leftCols<2>().inverse() * view.by_pose(d, p_BS);
   return true;
 }
 
@@ -473,7 +545,8 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
   while (tried_count < 4 && found.count < kMostShadows) {
     const Candidate candidate = best_candidate(tried, tried_count);
     if (candidate.ray < 0 || candidate.score < kLeastScore || candidate.contrast < 0.5 * parameters_.least_contrast ||
-        candidate.contrast < 0.5 * parameters_.least_share * level_) {
+        candidate.contrast < 0.5 * parameters_.least_share * level_ ||
+        (found.count > 0 && candidate.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
       break;
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;
@@ -487,6 +560,19 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     if (known) continue;
     found.shadow[static_cast<std::size_t>(found.count++)] = shadow;
     take_away(shadow);
+  }
+  return found;
+}
+
+ShadowFinder::Found ShadowFinder::find_strip(const LumaView& image, const geometry::Pose& X_BC) {
+  Found found;
+  const BoardView view(board_.camera, X_BC);
+  for (std::size_t side = 0; side < 2 && found.count == 0; ++side) {
+    const Candidate candidate = beside_cone(image, view, side);
+    ProbeShadow shadow;
+    if (candidate.ray >= 0 && fit(image, view, candidate, shadow)) {
+      found.shadow[static_cast<std::size_t>(found.count++)] = shadow;
+    }
   }
   return found;
 }

@@ -66,6 +66,10 @@ class ShadowFinder {
   /// \param saturation  the brightest level that the image can hold.
   Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
 
+  /// The shadow that lies behind its own cone but for a strip beside the cone's outline. After find(), on the same image, when no probe has shown a
+  /// whole shadow: a strip alone is easily something else.
+  Found find_strip(const LumaView& image, const geometry::Pose& X_BC);
+
   /// Of the places around the probe that the last image showed, the share that has no level left.
   [[nodiscard]] double share_saturated() const { return saturated_; }
 
@@ -84,6 +88,7 @@ class ShadowFinder {
     double score = 0.0;
     double contrast = 0.0;
     double level = 0.0;
+    bool strip = false;  // beside the cone that hides the rest: the tip is known to kStripSigma_m
   };
   struct Sample {
     Eigen::Vector2f from_foot;
@@ -100,9 +105,10 @@ class ShadowFinder {
   void take_plane_away();
   void look_around(const LumaView& image, const BoardView& view);
   [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count) const;
-  [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate,
-                         ProbeShadow& shadow);
-  int choose_samples(const LumaView& image, const BoardView& view, const Eigen::Vector2d& tip_shadow, double slack_m);
+  [[nodiscard]] Candidate beside_cone(const LumaView& image, const BoardView& view, std::size_t side) const;
+  [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate, ProbeShadow& shadow);
+  int choose_samples(const LumaView& image, const BoardView& view, const Eigen::Vector2d& tip_shadow, double slack_m,
+                     bool strip);
   [[nodiscard]] bool seen(const Eigen::Vector2d& p_B) const;
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
@@ -115,7 +121,7 @@ class ShadowFinder {
   double lamp_height_m_;
   SoftStep step_;
   std::array<Eigen::Vector2d, static_cast<std::size_t>(kRings) * kRays> grid_;  // from the foot
-  std::vector<Ring> shape_;         // [length][ray -kHalfWedge..kHalfWedge]
+  std::vector<Ring> shape_;                                                     // [length][ray -kHalfWedge..kHalfWedge]
   std::vector<Ring> shape_square_;
   std::array<double, kLengths> length_m_{};
   std::array<Ring, kRays> value_{};

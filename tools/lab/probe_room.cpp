@@ -122,9 +122,9 @@ RobotCopy RobotCopy::measured(const ProbeRoom& room, std::uint32_t seed, double 
   const auto copy = sim::calibrated_copy(room.world_.scene, 0, errors.times(factor), seed);
   RobotCopy robot;
   robot.X_RC = copy.X_RC;
-  robot.camera = {copy.camera.width_px, copy.camera.height_px, copy.camera.fx_px, copy.camera.fy_px, copy.camera.cx_px,
-                  copy.camera.cy_px,    copy.camera.k1,        copy.camera.k2,    copy.camera.p1,    copy.camera.p2,
-                  copy.camera.k3};
+  robot.camera = {copy.camera.width_px, copy.camera.height_px, copy.camera.fx_px, copy.camera.fy_px,
+                  copy.camera.cx_px,    copy.camera.cy_px,     copy.camera.k1,    copy.camera.k2,
+                  copy.camera.p1,       copy.camera.p2,        copy.camera.k3};
   // The board's turn, which the copy does not draw: the whole board about its middle; and each probe's foot by itself.
   Random random = Random(seed).fork(0xB0A);
   const double turn = factor * 0.2;

@@ -42,7 +42,9 @@ class ProbeRoom {
   /// A standpoint at which the light comes to the middle of the board at this angle from the vertical, from anywhere around.
   [[nodiscard]] std::optional<sim::Pose> standpoint(double angle_rad, Random& random) const;
 
-  [[nodiscard]] Eigen::Vector3d p_WL(int lamp = 0) const { return world_.scene.lamps[static_cast<std::size_t>(lamp)].p_WL; }
+  [[nodiscard]] Eigen::Vector3d p_WL(int lamp = 0) const {
+    return world_.scene.lamps[static_cast<std::size_t>(lamp)].p_WL;
+  }
   void move_lamp(int lamp, const Eigen::Vector3d& p_WL) { moved_[static_cast<std::size_t>(lamp)] = p_WL; }
   void switch_lamp(int lamp, bool on) { on_[static_cast<std::size_t>(lamp)] = on; }
   void scale_light(double factor) { factor_ = factor; }

@@ -1,0 +1,135 @@
+#include "pipeline/illumination/probe_observation.h"
+
+#include "pipeline/illumination/lamp.h"
+#include "tests/illumination/drawn_board.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cgsr::illumination {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kLampHeight_m = 1.85;
+
+// The mount is off by this; the image shows where the camera really is.
+geometry::Pose real_camera(const Board& board) {
+  geometry::Vector6d step;
+  step << 0.003, -0.002, 0.002, 0.004, -0.005, 0.003;
+  return geometry::moved(board.X_BC, step);
+}
+
+TEST(ProbeObservation, FindsTheShadowsOfDrawnTips) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  for (const auto& [angle, way] : {std::pair{25.0, 150.0}, {35.0, 270.0}, {45.0, 60.0}, {55.0, 30.0}}) {
+    Drawing drawing;
+    drawing.lamps_B = {lamp_at(angle, way)};
+    const auto image = draw(board, X_BC, drawing);
+    ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+    const auto seen = observer.observe(image.view());
+    ASSERT_EQ(seen.status, ObservationStatus::kSeen) << angle;
+    EXPECT_LT(geometry::step_between(X_BC, seen.registration.X_BC).head<3>().norm(), 0.002);
+    EXPECT_LT(geometry::step_between(X_BC, seen.registration.X_BC).tail<3>().norm(), 0.004);
+    int found = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (int k = 0; k < seen.probe[i].count; ++k) {
+        const ProbeShadow& shadow = seen.probe[i].shadow[static_cast<std::size_t>(k)];
+        if (shadow.lines < 2) continue;
+        ++found;
+        EXPECT_LT((shadow.p_BS - cast(drawing.lamps_B[0], board.probe[i].p_BA)).norm(), 0.003) << angle << ' ' << i;
+      }
+    }
+    EXPECT_GE(found, 1) << angle;
+    const auto lamps = locate_lamps(board, {}, seen);
+    ASSERT_EQ(lamps.count, 1) << angle;
+    EXPECT_LT((lamps.lamp[0].p_RL - board.X_RB * drawing.lamps_B[0]).norm(), 0.07) << angle;
+  }
+}
+
+TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  Drawing plain;
+  Drawing dirt;
+  dirt.darker = [](const Vector2d& p) {  // spots, some at the cones' feet
+    double dark = 0.0;
+    for (const Vector2d& spot :
+         {Vector2d(0.03, 0.235), Vector2d(-0.03, 0.17), Vector2d(0.04, -0.24), Vector2d(0.0, 0.0)})
+      dark += (p - spot).norm() < 0.012 ? 25.0 : 0.0;
+    return dark;
+  };
+  Drawing hand;
+  hand.darker = [](const Vector2d& p) {  // a straight edge across the board, and dark beyond
+    return p.x() + 0.6 * p.y() > 0.15 ? 30.0 : 0.0;
+  };
+  Drawing texture;
+  texture.darker = [](const Vector2d& p) { return 4.0 + 4.0 * std::sin(300.0 * p.x()) * std::sin(170.0 * p.y()); };
+  for (const Drawing& drawing : {plain, dirt, hand, texture}) {
+    const auto image = draw(board, X_BC, drawing);
+    ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+    const auto seen = observer.observe(image.view());
+    EXPECT_EQ(seen.probe[0].count + seen.probe[1].count, 0) << name_of(seen.status);
+  }
+}
+
+TEST(ProbeObservation, TwoLampsThrowTwoShadows) {
+  const Board board = shipped_board();
+  Drawing drawing;
+  drawing.lamps_B = {lamp_at(40, 160), lamp_at(40, 285)};
+  const auto image = draw(board, board.X_BC, drawing);
+  ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+  const auto lamps = locate_lamps(board, {}, observer.observe(image.view()));
+  ASSERT_EQ(lamps.count, 2);
+  for (const auto& p_BL : drawing.lamps_B) {
+    const double nearest =
+        std::min((lamps.lamp[0].p_RL - board.X_RB * p_BL).norm(), (lamps.lamp[1].p_RL - board.X_RB * p_BL).norm());
+    EXPECT_LT(nearest, 0.10);
+  }
+}
+
+TEST(ProbeObservationFault, EachHasItsName) {
+  const Board board = shipped_board();
+  Drawing drawing;
+  drawing.lamps_B = {lamp_at(40, 60)};
+  const auto image = draw(board, board.X_BC, drawing);
+  ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+  EXPECT_EQ(observer.observe({}).status, ObservationStatus::kNoImage);
+  ImageView smaller = image.view();
+  smaller.width_px = 320;
+  EXPECT_EQ(observer.observe(smaller).status, ObservationStatus::kWrongSize);
+
+  DrawnImage grey = image;
+  std::fill(grey.grey.begin(), grey.grey.end(), std::uint8_t{90});
+  EXPECT_EQ(observer.observe(grey.view()).status, ObservationStatus::kNotRegistered);
+
+  Drawing bright = drawing;
+  bright.board_level = 300.0;
+  bright.shadow_level = 10.0;
+  const auto saturated = draw(board, board.X_BC, bright);
+  EXPECT_EQ(observer.observe(saturated.view()).status, ObservationStatus::kSaturated);
+
+  Drawing one_gone = drawing;
+  one_gone.right_cone = false;
+  const auto without = draw(board, board.X_BC, one_gone);
+  const auto seen = observer.observe(without.view());
+  EXPECT_EQ(seen.missing, 2);
+  EXPECT_EQ(seen.probe[1].count, 0);
+}
+
+TEST(ProbeObservationAlloc, LookingAllocatesNothing) {
+  const Board board = shipped_board();
+  Drawing drawing;
+  drawing.lamps_B = {lamp_at(40, 60)};
+  const auto image = draw(board, board.X_BC, drawing);
+  ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "a sanitizer brings its own malloc";
+  const test::AllocationGuard guard;
+  const auto seen = observer.observe(image.view());
+  const auto lamps = locate_lamps(board, {}, seen);
+  EXPECT_EQ(guard.allocations(), 0U);
+  EXPECT_EQ(lamps.count, 1);
+}
+
+}  // namespace
+}  // namespace cgsr::illumination
