@@ -10,6 +10,7 @@
 #include "pipeline/render/expectation.h"
 #include "pipeline/render/raster_parameters.h"
 #include "pipeline/render/sphere_groups.h"
+#include "pipeline/render/surface_raster.h"
 #include "pipeline/render/view.h"
 
 namespace cgsr::render {
@@ -37,22 +38,13 @@ class DepthRaster : public Expectation {
   void draw(const geometry::Pose& X_WC, const geometry::Camera& camera);
 
  private:
-  struct Corner : ViewedCorner {
-    std::uint32_t look = 0;  ///< by which it was set.
-  };
   struct Line : EdgeLine {
     std::array<std::uint32_t, 2> own{};  ///< surfaces that cannot hide it.
     float nearer = 1.0F;                 ///< factor on its 1/Z.
   };
 
-  const Corner& corner(std::uint32_t vertex);
-  void place(const geometry::Pose& X_WC, const geometry::Camera& camera);
-  void draw_surfaces();
-  bool set_plane(std::uint32_t surface);
-  void draw_clipped(const std::array<const Corner*, 3>& corners, const DepthPlane& plane, std::uint32_t triangle);
   void look_at_edge(std::uint32_t edge);
   [[nodiscard]] bool visible(const Line& line, float s) const;
-  [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
   [[nodiscard]] float last_visible(const Line& line, float seen, float hidden, float precision) const;
   void keep_longest(std::size_t capacity);
 
@@ -60,19 +52,11 @@ class DepthRaster : public Expectation {
   RasterParameters parameters_;
   ViewKeeper views_;
   const View* view_;
-  SphereGroups surfaces_;
+  SurfaceRaster surfaces_;
   SphereGroups edges_;
   DepthBuffer buffer_;
-  std::vector<Corner> corners_;            ///< [vertex], as of the look that `look` says.
-  std::vector<DepthPlane> planes_;         ///< [surface], likewise.
-  std::vector<std::uint32_t> surface_of_;  ///< [triangle]
   std::vector<VisiblePiece> found_;
   std::vector<float> lengths_;
-  Frustum frustum_;
-  Eigen::Matrix3f to_cells_ = Eigen::Matrix3f::Identity();  ///< from W, turned and scaled to homogeneous cells.
-  Eigen::Matrix3f R_CW_ = Eigen::Matrix3f::Identity();
-  Eigen::Vector3f p_WC_ = Eigen::Vector3f::Zero();
-  std::uint32_t look_ = 0;
 };
 
 }  // namespace cgsr::render

@@ -1,0 +1,133 @@
+#include "pipeline/render/surface_raster.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cgsr::render {
+namespace {
+
+using Sphere = SphereGroups::Sphere;
+
+std::vector<Sphere> spheres_of_surfaces(const world::Map& map) {
+  std::vector<Sphere> spheres;
+  spheres.reserve(map.surfaces.size());
+  for (const world::Surface& surface : map.surfaces) {
+    Eigen::AlignedBox3f box;
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
+      for (const std::uint32_t v : map.triangles[surface.first_triangle + t]) box.extend(map.vertices[v]);
+    }
+    if (box.isEmpty()) {
+      spheres.push_back({});
+    } else {
+      spheres.push_back({box.center(), 0.5F * box.diagonal().norm()});
+    }
+  }
+  return spheres;
+}
+
+}  // namespace
+
+SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& parameters)
+    : map_(map),
+      parameters_(parameters),
+      surfaces_(spheres_of_surfaces(map), parameters.looked_at_most, parameters.surfaces_most),
+      corners_(map.vertices.size()),
+      planes_(map.surfaces.size()),
+      surface_of_(map.triangles.size(), world::kNone) {
+  for (std::uint32_t name = 0; name < map.surfaces.size(); ++name) {
+    const world::Surface& surface = map.surfaces[name];
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) surface_of_[surface.first_triangle + t] = name;
+  }
+}
+
+void SurfaceRaster::place(const geometry::Pose& X_WC, const View& view) {
+  view_ = &view;
+  frustum_ = frustum_of(X_WC, *view_, parameters_.near_m);
+  R_CW_ = X_WC.linear().transpose().cast<float>();
+  p_WC_ = X_WC.translation().cast<float>();
+  Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
+  K << view_->fx, 0.0, view_->cx, 0.0, view_->fy, view_->cy, 0.0, 0.0, 1.0;
+  to_cells_ = (K * X_WC.linear().transpose()).cast<float>();
+  if (++look_ == 0) {  // after 2^32 looks
+    for (Corner& each : corners_) each.look = 0;
+    look_ = 1;
+  }
+}
+
+const ViewedCorner& SurfaceRaster::corner(std::uint32_t vertex) {
+  Corner& found = corners_[vertex];
+  if (found.look == look_) return found;
+  found.look = look_;
+  found.set(to_cells_ * (map_.vertices[vertex] - p_WC_), static_cast<float>(parameters_.near_m));
+  return found;
+}
+
+void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer) {
+  place(X_WC, view);
+  buffer.clear();
+  int triangles_left = parameters_.triangles_most;
+  const double least_surface = 0.5 * parameters_.surface_least_cells / std::max(view_->fx, view_->fy);
+  for (const std::uint32_t name : surfaces_.select(frustum_, least_surface)) {
+    const world::Surface& surface = map_.surfaces[name];
+    if (!plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
+    const DepthPlane& plane = planes_[name];
+    triangles_left -= static_cast<int>(surface.triangle_count);
+    if (triangles_left < 0) break;
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
+      const std::uint32_t index = surface.first_triangle + t;
+      const world::Triangle& triangle = map_.triangles[index];
+      const std::array<const ViewedCorner*, 3> c = {&corner(triangle[0]), &corner(triangle[1]), &corner(triangle[2])};
+      if (c[0]->w > 0.0F && c[1]->w > 0.0F && c[2]->w > 0.0F) {
+        buffer.draw(c[0]->at, c[1]->at, c[2]->at, plane, index);
+      } else if (c[0]->w > 0.0F || c[1]->w > 0.0F || c[2]->w > 0.0F) {
+        draw_clipped(c, plane, index, buffer);
+      }
+    }
+  }
+}
+
+/// n_C . p_C = d with p_C = Z ((u - cx) / fx, (v - cy) / fy, 1) gives 1/Z = n_C . (...) / d, linear in u and v.
+bool SurfaceRaster::plane_in_view(const Eigen::Vector3f& normal, float offset_m, DepthPlane& plane) const {
+  const float d = offset_m - normal.dot(p_WC_);
+  if (std::abs(d) < 1e-5F) return false;
+  const Eigen::Vector3f n_C = R_CW_ * (normal / d);
+  plane.du = n_C.x() / static_cast<float>(view_->fx);
+  plane.dv = n_C.y() / static_cast<float>(view_->fy);
+  plane.at_origin = n_C.z() - plane.du * static_cast<float>(view_->cx) - plane.dv * static_cast<float>(view_->cy);
+  return true;
+}
+
+/// Cuts a triangle at the near plane (Sutherland and Hodgman): three or four corners are left.
+void SurfaceRaster::draw_clipped(const std::array<const ViewedCorner*, 3>& corners, const DepthPlane& plane,
+                                 std::uint32_t triangle, DepthBuffer& buffer) const {
+  const auto near = static_cast<float>(parameters_.near_m);
+  std::array<Eigen::Vector2f, 4> kept;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ViewedCorner& a = *corners[i];
+    const ViewedCorner& b = *corners[(i + 1) % 3];
+    if (a.w > 0.0F) kept[count++] = a.at;
+    if ((a.w > 0.0F) == (b.w > 0.0F)) continue;
+    const float t = (near - a.p.z()) / (b.p.z() - a.p.z());
+    kept[count++] = (a.p + t * (b.p - a.p)).head<2>() / near;
+  }
+  for (std::size_t i = 2; i < count; ++i) buffer.draw(kept[0], kept[i - 1], kept[i], plane, triangle);
+}
+
+bool SurfaceRaster::covers(std::uint32_t triangle, float u, float v) const {
+  const world::Triangle& t = map_.triangles[triangle];
+  const Corner& a = corners_[t[0]];
+  const Corner& b = corners_[t[1]];
+  const Corner& c = corners_[t[2]];
+  if (a.w == 0.0F || b.w == 0.0F || c.w == 0.0F) return true;
+  const auto side = [&](const Corner& from, const Corner& to) {
+    return (to.at.x() - from.at.x()) * (v - from.at.y()) - (to.at.y() - from.at.y()) * (u - from.at.x());
+  };
+  const float ab = side(a, b);
+  const float bc = side(b, c);
+  if ((ab > 0.0F && bc < 0.0F) || (ab < 0.0F && bc > 0.0F)) return false;
+  const float ca = side(c, a);
+  return ab + bc >= 0.0F ? ca >= 0.0F && ab >= 0.0F && bc >= 0.0F : ca <= 0.0F;
+}
+
+}  // namespace cgsr::render

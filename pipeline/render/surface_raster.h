@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/render/depth_buffer.h"
+#include "pipeline/render/edge_line.h"
+#include "pipeline/render/raster_parameters.h"
+#include "pipeline/render/sphere_groups.h"
+#include "pipeline/render/view.h"
+#include "pipeline/world/map.h"
+
+namespace cgsr::render {
+
+/// Draws a map's surfaces into a depth buffer and answers, for the pose that was drawn last, about single triangles at single places.
+/// Made for one map, which outlives it; allocates nothing after construction.
+class SurfaceRaster {
+ public:
+  SurfaceRaster(const world::Map& map, const RasterParameters& parameters);
+
+  /// \param view  of a camera without lens, outlives what is asked later.  \param buffer  of the view's size; cleared first.
+  void draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer);
+
+  [[nodiscard]] const View& view() const { return *view_; }
+  [[nodiscard]] const Frustum& frustum() const { return frustum_; }
+
+  /// A corner of the map in this view.
+  const ViewedCorner& corner(std::uint32_t vertex);
+
+  [[nodiscard]] std::uint32_t surface_of(std::uint32_t triangle) const { return surface_of_[triangle]; }
+  /// Of a surface that was drawn.
+  [[nodiscard]] const DepthPlane& plane_of(std::uint32_t surface) const { return planes_[surface]; }
+  /// Whether a triangle that was drawn covers a place of the raster, exactly; one that is cut by the near plane is taken to.
+  [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
+
+  /// The plane n . p = offset of W in this view. \return false: it passes through the camera and is not seen.
+  bool plane_in_view(const Eigen::Vector3f& normal, float offset_m, DepthPlane& plane) const;
+
+ private:
+  struct Corner : ViewedCorner {
+    std::uint32_t look = 0;  ///< by which it was set.
+  };
+
+  void place(const geometry::Pose& X_WC, const View& view);
+  void draw_clipped(const std::array<const ViewedCorner*, 3>& corners, const DepthPlane& plane, std::uint32_t triangle,
+                    DepthBuffer& buffer) const;
+
+  const world::Map& map_;
+  RasterParameters parameters_;
+  SphereGroups surfaces_;
+  std::vector<Corner> corners_;            ///< [vertex], as of the look that `look` says.
+  std::vector<DepthPlane> planes_;         ///< [surface], likewise.
+  std::vector<std::uint32_t> surface_of_;  ///< [triangle]
+  View none_;
+  const View* view_ = &none_;
+  Frustum frustum_;
+  Eigen::Matrix3f to_cells_ = Eigen::Matrix3f::Identity();  ///< from W, turned and scaled to homogeneous cells.
+  Eigen::Matrix3f R_CW_ = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f p_WC_ = Eigen::Vector3f::Zero();
+  std::uint32_t look_ = 0;
+};
+
+}  // namespace cgsr::render
