@@ -1,6 +1,8 @@
 #include "pipeline/render/depth_buffer.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <utility>
 
 #include <emmintrin.h>
@@ -36,6 +38,48 @@ void DepthBuffer::clear() {
 
 void DepthBuffer::draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c,
                        const DepthPlane& plane, std::uint32_t name) {
+  scan(a, b, c, [&](int y, int first, int last) { fill(y, first, last, plane, name); });
+}
+
+void DepthBuffer::mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c,
+                       const DepthPlane& plane, std::uint8_t* mask) const {
+  static constexpr auto kBytes = [] {
+    std::array<std::uint32_t, 16> bytes{};
+    for (std::uint32_t lanes = 0; lanes < 16; ++lanes) {
+      for (std::uint32_t lane = 0; lane < 4; ++lane) {
+        if ((lanes >> lane & 1U) != 0U) bytes[lanes] |= 0xFFU << (8U * lane);
+      }
+    }
+    return bytes;
+  }();
+  const __m128 lanes = _mm_setr_ps(0.0F, 1.0F, 2.0F, 3.0F);
+  const __m128 step = _mm_set1_ps(4.0F * plane.du);
+  scan(a, b, c, [&](int y, int first, int last) {
+    const float* depth = &w_[at(first, y)];
+    std::uint8_t* row = mask + static_cast<std::ptrdiff_t>(y) * width_;
+    __m128 w = _mm_add_ps(_mm_set1_ps(plane.at(static_cast<float>(first), static_cast<float>(y))),
+                          _mm_mul_ps(lanes, _mm_set1_ps(plane.du)));
+    for (int x = first; x < last; x += 4, depth += 4) {
+      auto nearer = static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmpgt_ps(w, _mm_loadu_ps(depth))));
+      w = _mm_add_ps(w, step);
+      if (nearer == 0) continue;
+      if (last - x >= 4) {
+        std::uint32_t four = 0;
+        std::memcpy(&four, row + x, sizeof four);
+        four |= kBytes[nearer];
+        std::memcpy(row + x, &four, sizeof four);
+      } else {
+        for (int k = x; k < last; ++k, nearer >>= 1U) {
+          if ((nearer & 1U) != 0U) row[k] = 255;
+        }
+      }
+    }
+  });
+}
+
+template <class Span>
+void DepthBuffer::scan(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c,
+                       Span&& span) const {
   const Eigen::Vector2f* top = &a;
   const Eigen::Vector2f* middle = &b;
   const Eigen::Vector2f* bottom = &c;
@@ -59,7 +103,7 @@ void DepthBuffer::draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const
                                         : middle->x() + lower_slope * (y - static_cast<double>(middle->y()));
     const int begin = first_at_or_after(middle_right ? along : bent, width_);
     const int end = first_at_or_after(middle_right ? bent : along, width_);
-    if (begin < end) fill(y, begin, end, plane, name);
+    if (begin < end) span(y, begin, end);
   }
 }
 

@@ -33,6 +33,10 @@ class DepthBuffer {
   void draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
             std::uint32_t name);
 
+  /// Writes 255 into a mask of width() x height() bytes where a triangle of a plane is nearer than what is there; the buffer stays as it is.
+  void mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
+            std::uint8_t* mask) const;
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] float inverse_depth(int x, int y) const { return w_[at(x, y)]; }
@@ -47,6 +51,9 @@ class DepthBuffer {
   [[nodiscard]] std::size_t at(int x, int y) const {
     return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
   }
+  /// Calls span(y, first, last) for the rows of cells whose centres a triangle covers.
+  template <class Span>
+  void scan(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, Span&& span) const;
   void fill(int y, int first, int last, const DepthPlane& plane, std::uint32_t name);
 
   int width_;

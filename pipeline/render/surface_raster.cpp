@@ -97,6 +97,25 @@ bool SurfaceRaster::plane_in_view(const Eigen::Vector3f& normal, float offset_m,
   return true;
 }
 
+void SurfaceRaster::mark(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float lift,
+                         const DepthBuffer& buffer, std::vector<std::uint8_t>& mask) const {
+  const auto near = static_cast<float>(parameters_.near_m);
+  std::array<Eigen::Vector3f, 4> p;
+  for (std::size_t i = 0; i < 4; ++i) p[i] = to_cells_ * (corners[i] - p_WC_);
+  std::array<Eigen::Vector2f, 6> kept;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Vector3f& a = p[i];
+    const Eigen::Vector3f& b = p[(i + 1) % 4];
+    if (a.z() >= near) kept[count++] = a.head<2>() / a.z();
+    if ((a.z() >= near) == (b.z() >= near)) continue;
+    const float t = (near - a.z()) / (b.z() - a.z());
+    kept[count++] = (a + t * (b - a)).head<2>() / near;
+  }
+  const DepthPlane lowered{plane.du / lift, plane.dv / lift, plane.at_origin / lift};
+  for (std::size_t i = 2; i < count; ++i) buffer.mark(kept[0], kept[i - 1], kept[i], lowered, mask.data());
+}
+
 /// Cuts a triangle at the near plane (Sutherland and Hodgman): three or four corners are left.
 void SurfaceRaster::draw_clipped(const std::array<const ViewedCorner*, 3>& corners, const DepthPlane& plane,
                                  std::uint32_t triangle, DepthBuffer& buffer) const {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "platform/parameters.h"
+
+namespace cgsr::render {
+
+/// How shaded regions are found (5.2).
+struct ShadeParameters {
+  int width = 160;
+  int height = 120;
+  int lamp_cells = 256;
+  double near_m = 0.05;
+  double margin = 1e-5;
+  double lift = 1e-3;
+  int surfaces_most = 4000;
+  int edges_most = 4000;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("width", self.width, {16, 1024}, "", "columns of the masks");
+    visit.number("height", self.height, {16, 1024}, "", "rows of them");
+    visit.number("lamp_cells", self.lamp_cells, {32, 2048}, "", "cells along each side of the six views from the lamp");
+    visit.number("near_m", self.near_m, {0.001, 10.0}, "m", "what is nearer to camera or lamp is not seen");
+    visit.number("margin", self.margin, {0.0, 0.01}, "",
+                 "a surface shades what lies behind it by this share of the way");
+    visit.number("lift", self.lift, {0.0, 0.1}, "", "volumes flatter than this share of the distance are none");
+    visit.number("surfaces_most", self.surfaces_most, {1, 10000000}, "", "drawn from the camera, and from the lamp");
+    visit.number("edges_most", self.edges_most, {1, 10000000}, "", "silhouettes whose volumes are drawn");
+  }
+};
+
+}  // namespace cgsr::render

@@ -1,0 +1,210 @@
+#include "pipeline/render/shadow_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace cgsr::render {
+namespace {
+
+RasterParameters raster_of(const ShadeParameters& parameters) {
+  RasterParameters raster;
+  raster.width = parameters.width;
+  raster.height = parameters.height;
+  raster.near_m = parameters.near_m;
+  raster.surfaces_most = parameters.surfaces_most;
+  raster.looked_at_most = std::max(raster.looked_at_most, 2 * parameters.surfaces_most);
+  raster.triangles_most = 8 * parameters.surfaces_most;
+  raster.surface_least_cells = 0.5;
+  return raster;
+}
+
+bool same(const geometry::Camera& a, const geometry::Camera& b) {
+  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px && a.fy_px == b.fy_px &&
+         a.cx_px == b.cx_px && a.cy_px == b.cy_px && a.k1 == b.k1 && a.k2 == b.k2 && a.p1 == b.p1 && a.p2 == b.p2 &&
+         a.k3 == b.k3;
+}
+
+}  // namespace
+
+ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& parameters)
+    : map_(map),
+      parameters_(parameters),
+      views_(parameters.width, parameters.height),
+      view_(&views_.of(geometry::Camera())),
+      surfaces_(map, raster_of(parameters)),
+      buffer_(parameters.width, parameters.height),
+      lamp_(map, parameters) {
+  const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
+  for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
+  rays_.resize(cells);
+  silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
+  sides_.resize(cells);
+  scratch_.resize(cells);
+  masks_.width = parameters.width;
+  masks_.height = parameters.height;
+  masks_.surface_shaded.resize(cells);
+  masks_.possibly_shaded.resize(cells);
+  take_camera(geometry::Camera());
+}
+
+const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
+                                      const Eigen::Vector3d& p_WL, int widen_cells) {
+  const bool same_lamp = valid_ && p_WL == p_WL_;
+  if (same_lamp && X_WC.matrix() == X_WC_.matrix() && same(camera, camera_) && widen_cells == widened_) return masks_;
+  if (!same(camera, camera_)) take_camera(camera);
+  if (!same_lamp) take_lamp(p_WL.cast<float>());
+  valid_ = true;
+  X_WC_ = X_WC;
+  p_WL_ = p_WL;
+  widened_ = widen_cells;
+  view_ = &views_.of(camera);
+  surfaces_.draw(X_WC, *view_, buffer_);
+  mark_sides(p_WL.cast<float>());
+  shade_surfaces(X_WC);
+  if (widen_cells > 0) {
+    widen(masks_.surface_shaded, widen_cells);
+    widen(masks_.possibly_shaded, widen_cells);
+  }
+  return masks_;
+}
+
+void ShadowVolumes::take_camera(const geometry::Camera& camera) {
+  camera_ = camera;
+  const View& view = views_.of(camera);
+  const double px_x = static_cast<double>(camera.width_px) / parameters_.width;
+  const double px_y = static_cast<double>(camera.height_px) / parameters_.height;
+  std::size_t i = 0;
+  for (int y = 0; y < parameters_.height; ++y) {
+    for (int x = 0; x < parameters_.width; ++x, ++i) {
+      const Eigen::Vector2d ideal = camera.ideal_of({(x + 0.5) * px_x - 0.5, (y + 0.5) * px_y - 0.5});
+      rays_[i] = {static_cast<float>(view.fx * ideal.x() + view.cx), static_cast<float>(view.fy * ideal.y() + view.cy),
+                  static_cast<float>(ideal.x()), static_cast<float>(ideal.y())};
+    }
+  }
+}
+
+/// Silhouettes: edges of which one surface is turned to the lamp and the other is not, or is not there.
+void ShadowVolumes::take_lamp(const Eigen::Vector3f& p_WL) {
+  lamp_.place(p_WL);
+  silhouettes_.clear();
+  const auto turned_to_lamp = [&](std::uint32_t surface) {
+    const world::Surface& s = map_.surfaces[surface];
+    return s.normal.dot(p_WL) > s.offset_m;
+  };
+  for (std::uint32_t name = 0; name < map_.edges.size(); ++name) {
+    const world::Edge& edge = map_.edges[name];
+    if (edge.surfaces[0] == world::kNone && edge.surfaces[1] == world::kNone) continue;
+    if (edge.surfaces[0] != world::kNone && edge.surfaces[1] != world::kNone &&
+        turned_to_lamp(edge.surfaces[0]) == turned_to_lamp(edge.surfaces[1])) {
+      continue;
+    }
+    if (silhouettes_.size() == silhouettes_.capacity()) return;
+    silhouettes_.push_back(name);
+  }
+}
+
+void ShadowVolumes::mark_sides(const Eigen::Vector3f& p_WL) {
+  std::fill(sides_.begin(), sides_.end(), std::uint8_t{0});
+  for (const std::uint32_t name : silhouettes_) draw_side(map_.edges[name], p_WL);
+}
+
+/// The side of a volume: from the edge away from the lamp, to where it has left the map.
+void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL) {
+  const Eigen::Vector3f& a = map_.vertices[edge.vertices[0]];
+  const Eigen::Vector3f& b = map_.vertices[edge.vertices[1]];
+  const Eigen::Vector3f n = (a - p_WL).cross(b - p_WL);
+  const float size = n.norm();
+  if (size < 1e-9F) return;
+  DepthPlane plane;
+  if (!surfaces_.plane_in_view(n / size, n.dot(p_WL) / size, plane)) return;
+  // How far the lamp's ray through each end goes until it is out of the map's box, in units of the way to the end.
+  const auto leaves_after = [&](const Eigen::Vector3f& end) {
+    float after = 1e4F;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const float way = end[i] - p_WL[i];
+      if (std::abs(way) < 1e-6F) continue;
+      const float border = way > 0.0F ? box_.max()[i] : box_.min()[i];
+      after = std::min(after, (border - p_WL[i]) / way);
+    }
+    return std::max(after, 1.0F);
+  };
+  const float reach = 1.2F * std::max(leaves_after(a), leaves_after(b));
+  const std::array<Eigen::Vector3f, 4> corners = {a, b, p_WL + reach * (b - p_WL), p_WL + reach * (a - p_WL)};
+  surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, sides_);
+}
+
+void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
+  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
+  const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
+  const bool camera_in_shade = lamp_.hidden(p_WC, world::kNone);
+  for (std::size_t i = 0; i < rays_.size(); ++i) {
+    const Ray& ray = rays_[i];
+    const std::uint32_t triangle = seen_at(ray);
+    std::uint8_t surface = 0;
+    std::uint8_t possibly = 0;
+    if (triangle != DepthBuffer::kNothing) {
+      const std::uint32_t own = surfaces_.surface_of(triangle);
+      const float depth = 1.0F / surfaces_.plane_of(own).at(ray.u, ray.v);
+      const Eigen::Vector3f p_W = p_WC + R_WC * Eigen::Vector3f(ray.x * depth, ray.y * depth, depth);
+      surface = lamp_.hidden(p_W, own) ? 255 : 0;
+      const int x = std::clamp(static_cast<int>(ray.u + 0.5F), 0, view_->width - 1);
+      const int y = std::clamp(static_cast<int>(ray.v + 0.5F), 0, view_->height - 1);
+      const auto cell = static_cast<std::size_t>(y * view_->width + x);
+      possibly = camera_in_shade ? 255 : static_cast<std::uint8_t>(surface | sides_[cell]);
+    }
+    masks_.surface_shaded[i] = surface;
+    masks_.possibly_shaded[i] = possibly;
+  }
+}
+
+/// The first triangle along a ray: the nearest of those around that cover it.
+std::uint32_t ShadowVolumes::seen_at(const Ray& ray) const {
+  const int x = std::clamp(static_cast<int>(ray.u), 0, view_->width - 2);
+  const int y = std::clamp(static_cast<int>(ray.v), 0, view_->height - 2);
+  const auto around = buffer_.names(x, y);
+  if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) return around[0];
+  std::uint32_t nearest = DepthBuffer::kNothing;
+  float most = 0.0F;
+  for (const std::uint32_t triangle : around) {
+    if (triangle == DepthBuffer::kNothing || triangle == nearest || !surfaces_.covers(triangle, ray.u, ray.v)) continue;
+    const float w = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v);
+    if (w > most) {
+      most = w;
+      nearest = triangle;
+    }
+  }
+  if (nearest != DepthBuffer::kNothing) return nearest;
+  const int at_x = std::clamp(static_cast<int>(ray.u + 0.5F), 0, view_->width - 1);
+  const int at_y = std::clamp(static_cast<int>(ray.v + 0.5F), 0, view_->height - 1);
+  const std::uint32_t triangle = buffer_.name(at_x, at_y);
+  if (triangle == DepthBuffer::kNothing) return triangle;
+  // A cell's own triangle that ends short of the ray: its plane still has to lie before the camera there.
+  const bool before = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v) > 0.0F;
+  return before ? triangle : DepthBuffer::kNothing;
+}
+
+/// Grows a mask by a square, rows first.
+void ShadowVolumes::widen(std::vector<std::uint8_t>& mask, int cells) {
+  const auto grow = [cells](const std::uint8_t* from, std::uint8_t* to, int count, int stride) {
+    int until = -1;  // covered up to here
+    for (int i = 0; i < count; ++i) {
+      if (from[static_cast<std::ptrdiff_t>(i) * stride] == 0) continue;
+      const int last = std::min(i + cells, count - 1);
+      for (int k = std::max(until + 1, i - cells); k <= last; ++k) to[static_cast<std::ptrdiff_t>(k) * stride] = 255;
+      until = last;
+    }
+  };
+  std::fill(scratch_.begin(), scratch_.end(), std::uint8_t{0});
+  for (int y = 0; y < masks_.height; ++y) {
+    const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(masks_.width);
+    grow(&mask[row], &scratch_[row], masks_.width, 1);
+  }
+  std::fill(mask.begin(), mask.end(), std::uint8_t{0});
+  for (int x = 0; x < masks_.width; ++x) {
+    const auto column = static_cast<std::size_t>(x);
+    grow(&scratch_[column], &mask[column], masks_.height, masks_.width);
+  }
+}
+
+}  // namespace cgsr::render

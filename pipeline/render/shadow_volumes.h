@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/render/lamp_view.h"
+#include "pipeline/render/shade_parameters.h"
+#include "pipeline/render/surface_raster.h"
+#include "pipeline/render/view.h"
+
+namespace cgsr::render {
+
+/// The two masks of shaded regions for one lamp, one byte a cell, 0 or 255, over the camera's image (lens included). A point counts as shaded
+/// when the map hides the lamp's centre from it.
+struct ShadeMasks {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> surface_shaded;   ///< the first surface of the map along the ray of the cell's middle is.
+  std::vector<std::uint8_t> possibly_shaded;  ///< some point between the camera and that surface is. Holds the first.
+};
+
+/// Shaded regions of the map (5.2) by shadow volumes, clipped by the map's depth.
+///
+/// The first mask asks for each cell's own ray, through the lens, whether the lamp sees where it ends (LampView). The second adds the sides of
+/// the volumes: behind each silhouette edge, away from the lamp, the half-plane that bounds what the edge's surface shades. Where a side stands
+/// before the map's first surface, the ray passes through shade; it does so without a side only when it begins or ends there. So nothing needs
+/// to be counted, volumes need no caps, and a camera inside of one is no special case.
+///
+/// What depends on lamp and map alone is kept while the lamp stays; with the same pose and camera as before the masks are kept as well.
+class ShadowVolumes {
+ public:
+  /// \param map  outlives it.
+  ShadowVolumes(const world::Map& map, const ShadeParameters& parameters);
+
+  /// \param p_WL  the lamp's centre.  \param widen_cells  both masks grow by so many cells in every direction: what the errors of pose and lamp
+  ///        move a shadow's border by.  \return the masks, until the next call. Allocates nothing.
+  const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
+                         int widen_cells = 0);
+
+  /// Edges that bound volumes, for the last lamp.
+  [[nodiscard]] std::size_t silhouettes() const { return silhouettes_.size(); }
+
+ private:
+  /// The ray of a cell's middle.
+  struct Ray {
+    float u;  ///< where it passes the raster, cells.
+    float v;
+    float x;  ///< its ideal coordinates.
+    float y;
+  };
+
+  void take_camera(const geometry::Camera& camera);
+  void take_lamp(const Eigen::Vector3f& p_WL);
+  void mark_sides(const Eigen::Vector3f& p_WL);
+  void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
+  void shade_surfaces(const geometry::Pose& X_WC);
+  [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
+  void widen(std::vector<std::uint8_t>& mask, int cells);
+
+  const world::Map& map_;
+  ShadeParameters parameters_;
+  ViewKeeper views_;
+  const View* view_;
+  SurfaceRaster surfaces_;
+  DepthBuffer buffer_;
+  LampView lamp_;
+  Eigen::AlignedBox3f box_;
+  std::vector<Ray> rays_;
+  std::vector<std::uint32_t> silhouettes_;
+  std::vector<std::uint8_t> sides_;  ///< of the raster: a volume's side stands before the surface.
+  std::vector<std::uint8_t> scratch_;
+  ShadeMasks masks_;
+  bool valid_ = false;
+  geometry::Pose X_WC_ = geometry::Pose::Identity();
+  geometry::Camera camera_;
+  Eigen::Vector3d p_WL_ = Eigen::Vector3d::Zero();
+  int widened_ = 0;
+};
+
+}  // namespace cgsr::render
