@@ -8,7 +8,8 @@ namespace cgsr::render {
 struct ShadeParameters {
   int width = 160;
   int height = 120;
-  int lamp_cells = 256;
+  int finer = 2;
+  int lamp_cells = 512;
   double near_m = 0.05;
   double margin = 1e-5;
   double lift = 1e-3;
@@ -19,6 +20,7 @@ struct ShadeParameters {
   static void describe(Self& self, Visitor& visit) {
     visit.number("width", self.width, {16, 1024}, "", "columns of the masks");
     visit.number("height", self.height, {16, 1024}, "", "rows of them");
+    visit.number("finer", self.finer, {1, 8}, "", "cells of the depth buffer along each side of a cell of the masks");
     visit.number("lamp_cells", self.lamp_cells, {32, 2048}, "", "cells along each side of the six views from the lamp");
     visit.number("near_m", self.near_m, {0.001, 10.0}, "m", "what is nearer to camera or lamp is not seen");
     visit.number("margin", self.margin, {0.0, 0.01}, "",

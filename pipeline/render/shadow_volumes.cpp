@@ -9,8 +9,8 @@ namespace {
 
 RasterParameters raster_of(const ShadeParameters& parameters) {
   RasterParameters raster;
-  raster.width = parameters.width;
-  raster.height = parameters.height;
+  raster.width = parameters.width * parameters.finer;
+  raster.height = parameters.height * parameters.finer;
   raster.near_m = parameters.near_m;
   raster.surfaces_most = parameters.surfaces_most;
   raster.looked_at_most = std::max(raster.looked_at_most, 2 * parameters.surfaces_most);
@@ -30,16 +30,16 @@ bool same(const geometry::Camera& a, const geometry::Camera& b) {
 ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& parameters)
     : map_(map),
       parameters_(parameters),
-      views_(parameters.width, parameters.height),
+      views_(raster_of(parameters).width, raster_of(parameters).height),
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, raster_of(parameters)),
-      buffer_(parameters.width, parameters.height),
+      buffer_(raster_of(parameters).width, raster_of(parameters).height),
       lamp_(map, parameters) {
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
   for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
   rays_.resize(cells);
   silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
-  sides_.resize(cells);
+  sides_.resize(cells * static_cast<std::size_t>(parameters.finer * parameters.finer));
   scratch_.resize(cells);
   masks_.width = parameters.width;
   masks_.height = parameters.height;
@@ -61,7 +61,7 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
   view_ = &views_.of(camera);
   surfaces_.draw(X_WC, *view_, buffer_);
   mark_sides(p_WL.cast<float>());
-  shade_surfaces(X_WC);
+  shade_surfaces(X_WC, p_WL.cast<float>());
   if (widen_cells > 0) {
     widen(masks_.surface_shaded, widen_cells);
     widen(masks_.possibly_shaded, widen_cells);
@@ -88,20 +88,22 @@ void ShadowVolumes::take_camera(const geometry::Camera& camera) {
 void ShadowVolumes::take_lamp(const Eigen::Vector3f& p_WL) {
   lamp_.place(p_WL);
   silhouettes_.clear();
-  const auto turned_to_lamp = [&](std::uint32_t surface) {
-    const world::Surface& s = map_.surfaces[surface];
-    return s.normal.dot(p_WL) > s.offset_m;
-  };
   for (std::uint32_t name = 0; name < map_.edges.size(); ++name) {
     const world::Edge& edge = map_.edges[name];
     if (edge.surfaces[0] == world::kNone && edge.surfaces[1] == world::kNone) continue;
     if (edge.surfaces[0] != world::kNone && edge.surfaces[1] != world::kNone &&
-        turned_to_lamp(edge.surfaces[0]) == turned_to_lamp(edge.surfaces[1])) {
+        faces(edge.surfaces[0], p_WL) == faces(edge.surfaces[1], p_WL)) {
       continue;
     }
     if (silhouettes_.size() == silhouettes_.capacity()) return;
     silhouettes_.push_back(name);
   }
+}
+
+/// Whether a place lies on the side of a surface that its normal points to.
+bool ShadowVolumes::faces(std::uint32_t surface, const Eigen::Vector3f& p_W) const {
+  const world::Surface& s = map_.surfaces[surface];
+  return s.normal.dot(p_W) > s.offset_m;
 }
 
 void ShadowVolumes::mark_sides(const Eigen::Vector3f& p_WL) {
@@ -134,7 +136,7 @@ void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_
   surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, sides_);
 }
 
-void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
+void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL) {
   const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
   const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
   const bool camera_in_shade = lamp_.hidden(p_WC, world::kNone);
@@ -147,7 +149,9 @@ void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
       const std::uint32_t own = surfaces_.surface_of(triangle);
       const float depth = 1.0F / surfaces_.plane_of(own).at(ray.u, ray.v);
       const Eigen::Vector3f p_W = p_WC + R_WC * Eigen::Vector3f(ray.x * depth, ray.y * depth, depth);
-      surface = lamp_.hidden(p_W, own) ? 255 : 0;
+      // A sheet between lamp and camera shades itself: what is seen is its other side.
+      const bool turned_away = faces(own, p_WL) != faces(own, p_WC);
+      surface = turned_away || lamp_.hidden(p_W, own) ? 255 : 0;
       const int x = std::clamp(static_cast<int>(ray.u + 0.5F), 0, view_->width - 1);
       const int y = std::clamp(static_cast<int>(ray.v + 0.5F), 0, view_->height - 1);
       const auto cell = static_cast<std::size_t>(y * view_->width + x);

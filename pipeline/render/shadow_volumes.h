@@ -54,7 +54,8 @@ class ShadowVolumes {
   void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
-  void shade_surfaces(const geometry::Pose& X_WC);
+  void shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL);
+  [[nodiscard]] bool faces(std::uint32_t surface, const Eigen::Vector3f& p_W) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
   void widen(std::vector<std::uint8_t>& mask, int cells);
 

@@ -9,6 +9,7 @@
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/render/make_expectation.h"
 #include "tests/render/box_map.h"
+#include "tests/render/free_pose.h"
 #include "tests/render/shipped_map.h"
 
 namespace cgsr::render {
@@ -17,10 +18,6 @@ namespace {
 using geometry::Camera;
 using geometry::Pose;
 using world::Map;
-
-double uniform(std::mt19937& random, double least, double most) {
-  return least + (most - least) * random() / 4294967296.0;
-}
 
 std::vector<VisiblePiece> of_edge(const std::vector<VisiblePiece>& pieces, std::uint32_t edge) {
   std::vector<VisiblePiece> found;
@@ -45,31 +42,6 @@ double shared_px(const std::vector<VisiblePiece>& first, const std::vector<Visib
     }
   }
   return sum;
-}
-
-/// A standpoint in the free space of a map, as far as the map's box goes; nothing stands right before the camera.
-Pose free_pose(const Map& map, DepthRaster& raster, std::mt19937& random) {
-  Eigen::AlignedBox3f box;
-  for (const auto& p : map.vertices) box.extend(p);
-  const Eigen::Vector3d least = box.min().cast<double>();
-  const Eigen::Vector3d most = box.max().cast<double>();
-  for (;;) {
-    const Eigen::Vector3d p_WC(uniform(random, least.x(), most.x()), uniform(random, least.y(), most.y()),
-                               uniform(random, 0.6, 1.5));
-    const double heading = uniform(random, -3.14159, 3.14159);
-    const Pose X_WC = looking_from(
-        p_WC, p_WC + Eigen::Vector3d(std::cos(heading), std::sin(heading), -std::tan(uniform(random, -0.1, 0.5))));
-    raster.draw(X_WC, Camera());
-    float nearest = 0.0F;
-    int drawn = 0;
-    for (int y = 0; y < raster.buffer().height(); ++y) {
-      for (int x = 0; x < raster.buffer().width(); ++x) {
-        nearest = std::max(nearest, raster.buffer().inverse_depth(x, y));
-        drawn += raster.buffer().name(x, y) != DepthBuffer::kNothing ? 1 : 0;
-      }
-    }
-    if (drawn > 20000 && nearest < 1.0F / 0.3F) return X_WC;
-  }
 }
 
 /// Every edge that either sees: both see the same of it, within 3 px at each end of each piece, but for a share of `most`.
@@ -98,7 +70,7 @@ void agree_in(const std::string& name, int poses, double most) {
   double whole_px = 0.0;
   double off_px = 0.0;
   for (int trial = 0; trial < poses; ++trial) {
-    const Pose X_WC = free_pose(map, raster, random);
+    const Pose X_WC = free_pose(map, random);
     const Camera camera = trial % 2 == 0 ? Camera() : lens;
     std::vector<VisiblePiece> ours;
     std::vector<VisiblePiece> theirs;
