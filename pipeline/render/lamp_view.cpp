@@ -67,14 +67,14 @@ void LampView::place(const Eigen::Vector3f& p_WL) {
   }
 }
 
-bool LampView::hidden(const Eigen::Vector3f& p_W, std::uint32_t own) const {
+LampView::Answer LampView::look_at(const Eigen::Vector3f& p_W, std::uint32_t own) const {
   const Eigen::Vector3f ray = p_W - p_WL_;
   const float ax = std::abs(ray.x());
   const float ay = std::abs(ray.y());
   const float az = std::abs(ray.z());
   const std::size_t axis = ax >= ay && ax >= az ? 0 : (ay >= az ? 1 : 2);
   const float along = ray[static_cast<Eigen::Index>(axis)];
-  if (along == 0.0F) return false;
+  if (along == 0.0F) return {};
   const std::size_t face = 2 * axis + (along < 0.0F ? 1 : 0);
   const Axes& axes = kFaces[face];
   const float per_depth = static_cast<float>(view_.fx) / std::abs(along);
@@ -86,9 +86,12 @@ bool LampView::hidden(const Eigen::Vector3f& p_W, std::uint32_t own) const {
   const auto hides = [&](std::uint32_t triangle) {
     return triangle != DepthBuffer::kNothing && surfaces_.surface_of(triangle) != own && stands_before(triangle, ray);
   };
-  if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) return hides(around[0]);
-  return hides(around[0]) || (around[1] != around[0] && hides(around[1])) ||
-         (around[2] != around[0] && hides(around[2])) || (around[3] != around[1] && hides(around[3]));
+  if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) {
+    return {hides(around[0]), around[0]};
+  }
+  const bool hidden = hides(around[0]) || (around[1] != around[0] && hides(around[1])) ||
+                      (around[2] != around[0] && hides(around[2])) || (around[3] != around[1] && hides(around[3]));
+  return {hidden, kMixed};
 }
 
 /// Whether the way from the lamp along `ray` meets the triangle before it ends (Moeller and Trumbore), the lamp at the origin.

@@ -18,8 +18,14 @@ class LampView {
   /// Draws the map as the lamp sees it. Allocates nothing.
   void place(const Eigen::Vector3f& p_WL);
 
+  struct Answer {
+    bool hidden = false;
+    std::uint32_t seen = kMixed;  ///< the triangle that the lamp sees all around the way to the point.
+  };
+  static constexpr std::uint32_t kMixed = 0xFFFFFFFEU;  ///< more than one.
+
   /// \param own  the surface that the point lies on, which does not hide it; kNone: none.
-  [[nodiscard]] bool hidden(const Eigen::Vector3f& p_W, std::uint32_t own) const;
+  [[nodiscard]] Answer look_at(const Eigen::Vector3f& p_W, std::uint32_t own) const;
 
  private:
   [[nodiscard]] bool stands_before(std::uint32_t triangle, const Eigen::Vector3f& ray) const;

@@ -38,6 +38,7 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
   for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
   rays_.resize(cells);
+  ends_.resize(cells);
   silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
   sides_.resize(cells * static_cast<std::size_t>(parameters.finer * parameters.finer));
   scratch_.resize(cells);
@@ -136,30 +137,80 @@ void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_
   surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, sides_);
 }
 
+struct ShadowVolumes::Places {
+  Eigen::Matrix3f R_WC;
+  Eigen::Vector3f p_WC;
+  Eigen::Vector3f p_WL;
+};
+
+/// Every second ray of every second row is followed; what lies between rays that end alike is taken to end alike when nothing else is seen
+/// there. So a shadow narrower than two cells may be lost, a narrow thing is not.
 void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL) {
-  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
-  const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
-  const bool camera_in_shade = lamp_.hidden(p_WC, world::kNone);
-  for (std::size_t i = 0; i < rays_.size(); ++i) {
-    const Ray& ray = rays_[i];
-    const std::uint32_t triangle = seen_at(ray);
-    std::uint8_t surface = 0;
-    std::uint8_t possibly = 0;
-    if (triangle != DepthBuffer::kNothing) {
-      const std::uint32_t own = surfaces_.surface_of(triangle);
-      const float depth = 1.0F / surfaces_.plane_of(own).at(ray.u, ray.v);
-      const Eigen::Vector3f p_W = p_WC + R_WC * Eigen::Vector3f(ray.x * depth, ray.y * depth, depth);
-      // A sheet between lamp and camera shades itself: what is seen is its other side.
-      const bool turned_away = faces(own, p_WL) != faces(own, p_WC);
-      surface = turned_away || lamp_.hidden(p_W, own) ? 255 : 0;
-      const int x = std::clamp(static_cast<int>(ray.u + 0.5F), 0, view_->width - 1);
-      const int y = std::clamp(static_cast<int>(ray.v + 0.5F), 0, view_->height - 1);
-      const auto cell = static_cast<std::size_t>(y * view_->width + x);
-      possibly = camera_in_shade ? 255 : static_cast<std::uint8_t>(surface | sides_[cell]);
-    }
-    masks_.surface_shaded[i] = surface;
-    masks_.possibly_shaded[i] = possibly;
+  const Places places{X_WC.linear().cast<float>(), X_WC.translation().cast<float>(), p_WL};
+  const int width = masks_.width;
+  const int height = masks_.height;
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
+  for (int y = 0; y < height; y += 2) {
+    for (int x = 0; x < width; x += 2) follow(rays_[at(x, y)], places, seen_at(rays_[at(x, y)]), ends_[at(x, y)]);
   }
+  const auto between = [&](std::size_t cell, const End& a, const End& b) {
+    const Ray& ray = rays_[cell];
+    const std::uint32_t around = seen_around(ray);
+    if (a.like(b) && a.triangle == around) {
+      ends_[cell] = a;
+    } else {
+      follow(ray, places, around == LampView::kMixed ? seen_at(ray) : around, ends_[cell]);
+    }
+  };
+  for (int y = 0; y < height; y += 2) {
+    for (int x = 1; x < width; x += 2)
+      between(at(x, y), ends_[at(x - 1, y)], ends_[at(std::min(x + 1, width - 1) & ~1, y)]);
+  }
+  for (int y = 1; y < height; y += 2) {
+    const int below = std::min(y + 1, height - 1) & ~1;
+    for (int x = 0; x < width; ++x) between(at(x, y), ends_[at(x, y - 1)], ends_[at(x, below)]);
+  }
+  write_masks(places.p_WC);
+}
+
+void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const {
+  end = {triangle, LampView::kMixed, 0};
+  if (triangle == DepthBuffer::kNothing) return;
+  const std::uint32_t own = surfaces_.surface_of(triangle);
+  // A sheet between lamp and camera shades itself: what is seen is its other side.
+  if (faces(own, places.p_WL) != faces(own, places.p_WC)) {
+    end.shaded = 255;
+    end.seen = triangle;
+    return;
+  }
+  const float depth = 1.0F / surfaces_.plane_of(own).at(ray.u, ray.v);
+  const Eigen::Vector3f p_W = places.p_WC + places.R_WC * Eigen::Vector3f(ray.x * depth, ray.y * depth, depth);
+  const LampView::Answer answer = lamp_.look_at(p_W, own);
+  end.shaded = answer.hidden ? 255 : 0;
+  end.seen = answer.seen;
+}
+
+void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
+  const std::uint8_t in_shade = lamp_.look_at(p_WC, world::kNone).hidden ? 255 : 0;
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    const End& end = ends_[i];
+    masks_.surface_shaded[i] = end.shaded;
+    masks_.possibly_shaded[i] = 0;
+    if (end.triangle == DepthBuffer::kNothing) continue;
+    const int x = std::clamp(static_cast<int>(rays_[i].u + 0.5F), 0, view_->width - 1);
+    const int y = std::clamp(static_cast<int>(rays_[i].v + 0.5F), 0, view_->height - 1);
+    masks_.possibly_shaded[i] =
+        static_cast<std::uint8_t>(end.shaded | in_shade | sides_[static_cast<std::size_t>(y * view_->width + x)]);
+  }
+}
+
+/// The triangle in all four cells around a ray; kMixed: there are several.
+std::uint32_t ShadowVolumes::seen_around(const Ray& ray) const {
+  const int x = std::clamp(static_cast<int>(ray.u), 0, view_->width - 2);
+  const int y = std::clamp(static_cast<int>(ray.v), 0, view_->height - 2);
+  const auto around = buffer_.names(x, y);
+  const bool one = ((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0;
+  return one ? around[0] : LampView::kMixed;
 }
 
 /// The first triangle along a ray: the nearest of those around that cover it.

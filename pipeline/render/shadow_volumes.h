@@ -49,13 +49,27 @@ class ShadowVolumes {
     float x;  ///< its ideal coordinates.
     float y;
   };
+  /// Where a ray ends.
+  struct End {
+    std::uint32_t triangle = DepthBuffer::kNothing;
+    std::uint32_t seen = LampView::kMixed;  ///< by the lamp, around it.
+    std::uint8_t shaded = 0;
+
+    [[nodiscard]] bool like(const End& other) const {
+      return triangle == other.triangle && seen == other.seen && seen != LampView::kMixed && shaded == other.shaded;
+    }
+  };
+  struct Places;
 
   void take_camera(const geometry::Camera& camera);
   void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
   void shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL);
+  void follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const;
+  void write_masks(const Eigen::Vector3f& p_WC);
   [[nodiscard]] bool faces(std::uint32_t surface, const Eigen::Vector3f& p_W) const;
+  [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
   void widen(std::vector<std::uint8_t>& mask, int cells);
 
@@ -68,6 +82,7 @@ class ShadowVolumes {
   LampView lamp_;
   Eigen::AlignedBox3f box_;
   std::vector<Ray> rays_;
+  std::vector<End> ends_;
   std::vector<std::uint32_t> silhouettes_;
   std::vector<std::uint8_t> sides_;  ///< of the raster: a volume's side stands before the surface.
   std::vector<std::uint8_t> scratch_;

@@ -75,9 +75,6 @@ TEST(ShadeTruth, HomeIsShadedAsTheRayTracerSays) {
 TEST(ShadeTruth, OcclusionIsShadedAsTheRayTracerSays) {
   agree_in("occlusion", 4);
 }
-TEST(ShadeTruth, PeopleIsShadedAsTheRayTracerSays) {
-  agree_in("people", 8);
-}
 
 }  // namespace
 }  // namespace cgsr::render
