@@ -17,4 +17,4 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)  # OpenGL without a window
 find_package(embree 3.13 REQUIRED)  # the simulator alone: ray tracing
-find_package(assimp 5.2 REQUIRED)   # the simulator alone: meshes for its scenes
+find_package(assimp 5.2 REQUIRED)   # meshes: maps, and scenes of the simulator

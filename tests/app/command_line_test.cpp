@@ -26,7 +26,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(CommandLine, HelpNamesEveryCommand) {
   const auto help = run_cgsr({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "check", "learn", "track", "reproduce", "sim"})
+  for (const char* command : {"run", "check", "learn", "track", "map", "reproduce", "sim"})
     EXPECT_THAT(help.output, HasSubstr(command));
 }
 

@@ -1,0 +1,103 @@
+// cgsr map as a user meets it.
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A white board on a grey floor, a camera and a pose that looks at them.
+class MapCommand : public ::testing::Test {
+ protected:
+  MapCommand() {
+    std::ofstream(scratch_ / "map.obj") << "mtllib map.mtl\n"
+                                           "usemtl grey\nv 0 -3 0\nv 6 -3 0\nv 6 3 0\nv 0 3 0\nf 1 2 3 4\n"
+                                           "usemtl white\nv 3 -0.5 0\nv 3 0.5 0\nv 3 0.5 1\nv 3 -0.5 1\nf 5 8 7 6\n";
+    std::ofstream(scratch_ / "map.mtl") << "newmtl grey\nKd 0.4 0.4 0.4\nnewmtl white\nKd 0.9 0.9 0.9\n";
+    std::ofstream(scratch_ / "camera.yaml")
+        << "image_width: 320\nimage_height: 240\ncamera_name: test\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+           "  data: [300.0, 0.0, 159.5, 0.0, 300.0, 119.5, 0.0, 0.0, 1.0]\ndistortion_model: plumb_bob\n"
+           "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [-0.1, 0.02, 0.0, 0.0, 0.0]\n";
+    // Looks along x, level, from 0.5 m above the floor.
+    std::ofstream(scratch_ / "pose.csv") << "tx,ty,tz,qw,qx,qy,qz\n0.5,0,0.5,0.5,-0.5,0.5,-0.5\n";
+  }
+
+  [[nodiscard]] std::string at(const char* name) const { return scratch_ / name; }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(MapCommand, InfoCountsWhatIsInIt) {
+  const auto info = run_cgsr({"map", "info", at("map.obj"), "--json"});
+  ASSERT_EQ(info.exit_code, 0) << info.errors;
+  const auto json = nlohmann::json::parse(info.output);
+  EXPECT_EQ(json["surfaces"], 2);
+  EXPECT_EQ(json["edges"], 8);
+  EXPECT_EQ(json["edges_by_kind"]["border"], 8);
+  EXPECT_EQ(json["borders_on_a_surface"], 1);
+  EXPECT_GT(json["index"]["bytes"], 0);
+  const auto text = run_cgsr({"map", "info", at("map.obj")});
+  EXPECT_THAT(text.output, HasSubstr("surfaces  2 of 4 triangles"));
+  EXPECT_THAT(text.output, HasSubstr("material  white  0.900"));
+}
+
+TEST_F(MapCommand, ImportWritesACopyThatIsTheSame) {
+  const auto import = run_cgsr({"map", "import", at("map.obj"), "--output", at("copy.cgsrmap")});
+  ASSERT_EQ(import.exit_code, 0) << import.errors;
+  auto of_file = nlohmann::json::parse(run_cgsr({"map", "info", at("map.obj"), "--json"}).output);
+  auto of_copy = nlohmann::json::parse(run_cgsr({"map", "info", at("copy.cgsrmap"), "--json"}).output);
+  for (auto* json : {&of_file, &of_copy}) {
+    json->erase("file");
+    (*json)["index"].erase("build_ms");
+  }
+  EXPECT_EQ(of_file, of_copy);
+  const auto wrong = run_cgsr({"map", "import", at("map.obj"), "--output", at("copy.obj")});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.errors, HasSubstr("ends in .cgsrmap"));
+}
+
+TEST_F(MapCommand, RenderAndOverlayDrawWhatTheCameraSees) {
+  const auto render = run_cgsr({"map", "render", at("map.obj"), "--camera", at("camera.yaml"), "--pose", at("pose.csv"),
+                                "--output", at("view.png")});
+  ASSERT_EQ(render.exit_code, 0) << render.errors;
+  const cv::Mat view = cv::imread(at("view.png"));
+  ASSERT_EQ(view.size(), cv::Size(320, 240));
+  EXPECT_GT(view.at<cv::Vec3b>(120, 160)[0], 200) << "the board";
+  EXPECT_NEAR(view.at<cv::Vec3b>(235, 160)[0], 0.4 * 255 * 0.75, 20) << "the floor";
+  // The board's upper edge: 0.5 m up at 2.5 m is 60 px above the middle, a little less through the lens.
+  const cv::Mat black = cv::Mat::zeros(240, 320, CV_8UC3);
+  cv::imwrite(at("black.png"), black);
+  const auto overlay = run_cgsr({"map", "overlay", at("map.obj"), "--camera", at("camera.yaml"), "--pose",
+                                 at("pose.csv"), "--image", at("black.png"), "--output", at("over.png")});
+  ASSERT_EQ(overlay.exit_code, 0) << overlay.errors;
+  const cv::Mat over = cv::imread(at("over.png"));
+  int brightest = 0;
+  for (int row = 20; row < 119; ++row) {
+    if (over.at<cv::Vec3b>(row, 160)[2] > over.at<cv::Vec3b>(brightest, 160)[2]) brightest = row;
+  }
+  EXPECT_NEAR(brightest, 119.5 - 60.0 * (1.0 - 0.1 * 0.04), 1.5);
+}
+
+TEST_F(MapCommand, WhatIsWrongIsNamed) {
+  EXPECT_THAT(run_cgsr({"map", "info", at("none.obj")}).errors, HasSubstr("none.obj: No such file"));
+  EXPECT_THAT(run_cgsr({"map", "info", at("camera.yaml")}).errors, HasSubstr("no kind of map that is read"));
+  EXPECT_EQ(run_cgsr({"map", "info", at("map.obj"), "--up", "x"}).exit_code, 2);
+  cv::imwrite(at("small.png"), cv::Mat::zeros(10, 10, CV_8UC3));
+  const auto size = run_cgsr({"map", "overlay", at("map.obj"), "--camera", at("camera.yaml"), "--pose", at("pose.csv"),
+                              "--image", at("small.png"), "--output", at("over.png")});
+  EXPECT_EQ(size.exit_code, 1);
+  EXPECT_THAT(size.errors, HasSubstr("10x10 px, but"));
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
