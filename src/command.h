@@ -20,6 +20,7 @@ enum ExitCode : int {
 
 // Each subcommand adds its options to the program and, once chosen, leaves its exit code in `exit_code`.
 void add_run_command(CLI::App& app, int& exit_code);
+void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
 void add_learn_command(CLI::App& app, int& exit_code);
 void add_track_command(CLI::App& app, int& exit_code);
