@@ -37,20 +37,23 @@ class DepthBuffer {
   void mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
             std::uint8_t* mask) const;
 
+  /// Where a cell lies in memory, for names().
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
+  }
+
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] float inverse_depth(int x, int y) const { return w_[at(x, y)]; }
   [[nodiscard]] std::uint32_t name(int x, int y) const { return name_[at(x, y)]; }  ///< kNothing: nothing is.
   /// Of four cells: (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
-  [[nodiscard]] std::array<std::uint32_t, 4> names(int x, int y) const {
-    const std::uint32_t* const first = &name_[at(x, y)];
+  [[nodiscard]] std::array<std::uint32_t, 4> names(int x, int y) const { return names(at(x, y)); }
+  [[nodiscard]] std::array<std::uint32_t, 4> names(std::size_t cell) const {
+    const std::uint32_t* const first = &name_[cell];
     return {first[0], first[1], first[stride_], first[stride_ + 1]};
   }
 
  private:
-  [[nodiscard]] std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * stride_ + static_cast<std::size_t>(x);
-  }
   /// Calls span(y, first, last) for the rows of cells whose centres a triangle covers.
   template <class Span>
   void scan(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, Span&& span) const;

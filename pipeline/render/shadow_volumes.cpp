@@ -37,6 +37,7 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
       lamp_(map, parameters) {
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
   for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
+  lamp_in_front_.resize(map.surfaces.size());
   rays_.resize(cells);
   ends_.resize(cells);
   silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
@@ -62,7 +63,7 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
   view_ = &views_.of(camera);
   surfaces_.draw(X_WC, *view_, buffer_);
   mark_sides(p_WL.cast<float>());
-  shade_surfaces(X_WC, p_WL.cast<float>());
+  shade_surfaces(X_WC);
   if (widen_cells > 0) {
     widen(masks_.surface_shaded, widen_cells);
     widen(masks_.possibly_shaded, widen_cells);
@@ -79,8 +80,18 @@ void ShadowVolumes::take_camera(const geometry::Camera& camera) {
   for (int y = 0; y < parameters_.height; ++y) {
     for (int x = 0; x < parameters_.width; ++x, ++i) {
       const Eigen::Vector2d ideal = camera.ideal_of({(x + 0.5) * px_x - 0.5, (y + 0.5) * px_y - 0.5});
-      rays_[i] = {static_cast<float>(view.fx * ideal.x() + view.cx), static_cast<float>(view.fy * ideal.y() + view.cy),
-                  static_cast<float>(ideal.x()), static_cast<float>(ideal.y())};
+      const auto u = static_cast<float>(view.fx * ideal.x() + view.cx);
+      const auto v = static_cast<float>(view.fy * ideal.y() + view.cy);
+      const int left = std::clamp(static_cast<int>(u), 0, view.width - 2);
+      const int top = std::clamp(static_cast<int>(v), 0, view.height - 2);
+      const int column = std::clamp(static_cast<int>(u + 0.5F), 0, view.width - 1);
+      const int row = std::clamp(static_cast<int>(v + 0.5F), 0, view.height - 1);
+      rays_[i] = {u,
+                  v,
+                  static_cast<float>(ideal.x()),
+                  static_cast<float>(ideal.y()),
+                  static_cast<std::uint32_t>(buffer_.at(left, top)),
+                  static_cast<std::uint32_t>(row * view.width + column)};
     }
   }
 }
@@ -89,22 +100,19 @@ void ShadowVolumes::take_camera(const geometry::Camera& camera) {
 void ShadowVolumes::take_lamp(const Eigen::Vector3f& p_WL) {
   lamp_.place(p_WL);
   silhouettes_.clear();
+  for (std::size_t i = 0; i < map_.surfaces.size(); ++i) {
+    lamp_in_front_[i] = map_.surfaces[i].normal.dot(p_WL) > map_.surfaces[i].offset_m ? 1 : 0;
+  }
   for (std::uint32_t name = 0; name < map_.edges.size(); ++name) {
     const world::Edge& edge = map_.edges[name];
     if (edge.surfaces[0] == world::kNone && edge.surfaces[1] == world::kNone) continue;
     if (edge.surfaces[0] != world::kNone && edge.surfaces[1] != world::kNone &&
-        faces(edge.surfaces[0], p_WL) == faces(edge.surfaces[1], p_WL)) {
+        lamp_in_front_[edge.surfaces[0]] == lamp_in_front_[edge.surfaces[1]]) {
       continue;
     }
     if (silhouettes_.size() == silhouettes_.capacity()) return;
     silhouettes_.push_back(name);
   }
-}
-
-/// Whether a place lies on the side of a surface that its normal points to.
-bool ShadowVolumes::faces(std::uint32_t surface, const Eigen::Vector3f& p_W) const {
-  const world::Surface& s = map_.surfaces[surface];
-  return s.normal.dot(p_W) > s.offset_m;
 }
 
 void ShadowVolumes::mark_sides(const Eigen::Vector3f& p_WL) {
@@ -140,13 +148,12 @@ void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_
 struct ShadowVolumes::Places {
   Eigen::Matrix3f R_WC;
   Eigen::Vector3f p_WC;
-  Eigen::Vector3f p_WL;
 };
 
 /// Every second ray of every second row is followed; what lies between rays that end alike is taken to end alike when nothing else is seen
 /// there. So a shadow narrower than two cells may be lost, a narrow thing is not.
-void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL) {
-  const Places places{X_WC.linear().cast<float>(), X_WC.translation().cast<float>(), p_WL};
+void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
+  const Places places{X_WC.linear().cast<float>(), X_WC.translation().cast<float>()};
   const int width = masks_.width;
   const int height = masks_.height;
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
@@ -178,7 +185,7 @@ void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t t
   if (triangle == DepthBuffer::kNothing) return;
   const std::uint32_t own = surfaces_.surface_of(triangle);
   // A sheet between lamp and camera shades itself: what is seen is its other side.
-  if (faces(own, places.p_WL) != faces(own, places.p_WC)) {
+  if ((lamp_in_front_[own] != 0) != surfaces_.from_front(own)) {
     end.shaded = 255;
     end.seen = triangle;
     return;
@@ -192,32 +199,30 @@ void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t t
 
 void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
   const std::uint8_t in_shade = lamp_.look_at(p_WC, world::kNone).hidden ? 255 : 0;
-  for (std::size_t i = 0; i < ends_.size(); ++i) {
-    const End& end = ends_[i];
-    masks_.surface_shaded[i] = end.shaded;
-    masks_.possibly_shaded[i] = 0;
-    if (end.triangle == DepthBuffer::kNothing) continue;
-    const int x = std::clamp(static_cast<int>(rays_[i].u + 0.5F), 0, view_->width - 1);
-    const int y = std::clamp(static_cast<int>(rays_[i].v + 0.5F), 0, view_->height - 1);
-    masks_.possibly_shaded[i] =
-        static_cast<std::uint8_t>(end.shaded | in_shade | sides_[static_cast<std::size_t>(y * view_->width + x)]);
+  std::uint8_t* const surface =
+      masks_.surface_shaded.data();  // bytes may point anywhere: spare what is behind the vectors a look
+  std::uint8_t* const possibly = masks_.possibly_shaded.data();
+  const std::uint8_t* const sides = sides_.data();
+  const End* const ends = ends_.data();
+  const Ray* const rays = rays_.data();
+  const std::size_t count = ends_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t some = ends[i].triangle == DepthBuffer::kNothing ? 0 : 255;
+    surface[i] = ends[i].shaded;
+    possibly[i] = static_cast<std::uint8_t>((ends[i].shaded | in_shade | sides[rays[i].nearest]) & some);
   }
 }
 
 /// The triangle in all four cells around a ray; kMixed: there are several.
 std::uint32_t ShadowVolumes::seen_around(const Ray& ray) const {
-  const int x = std::clamp(static_cast<int>(ray.u), 0, view_->width - 2);
-  const int y = std::clamp(static_cast<int>(ray.v), 0, view_->height - 2);
-  const auto around = buffer_.names(x, y);
+  const auto around = buffer_.names(ray.around);
   const bool one = ((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0;
   return one ? around[0] : LampView::kMixed;
 }
 
 /// The first triangle along a ray: the nearest of those around that cover it.
 std::uint32_t ShadowVolumes::seen_at(const Ray& ray) const {
-  const int x = std::clamp(static_cast<int>(ray.u), 0, view_->width - 2);
-  const int y = std::clamp(static_cast<int>(ray.v), 0, view_->height - 2);
-  const auto around = buffer_.names(x, y);
+  const auto around = buffer_.names(ray.around);
   if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) return around[0];
   std::uint32_t nearest = DepthBuffer::kNothing;
   float most = 0.0F;
@@ -230,9 +235,8 @@ std::uint32_t ShadowVolumes::seen_at(const Ray& ray) const {
     }
   }
   if (nearest != DepthBuffer::kNothing) return nearest;
-  const int at_x = std::clamp(static_cast<int>(ray.u + 0.5F), 0, view_->width - 1);
-  const int at_y = std::clamp(static_cast<int>(ray.v + 0.5F), 0, view_->height - 1);
-  const std::uint32_t triangle = buffer_.name(at_x, at_y);
+  const auto nearest_cell = static_cast<int>(ray.nearest);
+  const std::uint32_t triangle = buffer_.name(nearest_cell % view_->width, nearest_cell / view_->width);
   if (triangle == DepthBuffer::kNothing) return triangle;
   // A cell's own triangle that ends short of the ray: its plane still has to lie before the camera there.
   const bool before = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v) > 0.0F;

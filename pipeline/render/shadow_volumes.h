@@ -48,6 +48,8 @@ class ShadowVolumes {
     float v;
     float x;  ///< its ideal coordinates.
     float y;
+    std::uint32_t around;   ///< the upper left of the four cells around it, in the buffer.
+    std::uint32_t nearest;  ///< cell, in sides_.
   };
   /// Where a ray ends.
   struct End {
@@ -65,10 +67,9 @@ class ShadowVolumes {
   void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
-  void shade_surfaces(const geometry::Pose& X_WC, const Eigen::Vector3f& p_WL);
+  void shade_surfaces(const geometry::Pose& X_WC);
   void follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const;
   void write_masks(const Eigen::Vector3f& p_WC);
-  [[nodiscard]] bool faces(std::uint32_t surface, const Eigen::Vector3f& p_W) const;
   [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
   void widen(std::vector<std::uint8_t>& mask, int cells);
@@ -83,6 +84,7 @@ class ShadowVolumes {
   Eigen::AlignedBox3f box_;
   std::vector<Ray> rays_;
   std::vector<End> ends_;
+  std::vector<std::uint8_t> lamp_in_front_;  ///< [surface]: on the side that its normal points to.
   std::vector<std::uint32_t> silhouettes_;
   std::vector<std::uint8_t> sides_;  ///< of the raster: a volume's side stands before the surface.
   std::vector<std::uint8_t> scratch_;

@@ -33,6 +33,7 @@ SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& para
       surfaces_(spheres_of_surfaces(map), parameters.looked_at_most, parameters.surfaces_most),
       corners_(map.vertices.size()),
       planes_(map.surfaces.size()),
+      front_(map.surfaces.size()),
       surface_of_(map.triangles.size(), world::kNone) {
   for (std::uint32_t name = 0; name < map.surfaces.size(); ++name) {
     const world::Surface& surface = map.surfaces[name];
@@ -71,6 +72,7 @@ void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuff
     const world::Surface& surface = map_.surfaces[name];
     if (!plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
     const DepthPlane& plane = planes_[name];
+    front_[name] = surface.normal.dot(p_WC_) > surface.offset_m ? 1 : 0;
     triangles_left -= static_cast<int>(surface.triangle_count);
     if (triangles_left < 0) break;
     for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {

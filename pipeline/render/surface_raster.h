@@ -31,6 +31,8 @@ class SurfaceRaster {
   [[nodiscard]] std::uint32_t surface_of(std::uint32_t triangle) const { return surface_of_[triangle]; }
   /// Of a surface that was drawn.
   [[nodiscard]] const DepthPlane& plane_of(std::uint32_t surface) const { return planes_[surface]; }
+  /// Whether the camera is on the side that a drawn surface's normal points to.
+  [[nodiscard]] bool from_front(std::uint32_t surface) const { return front_[surface] != 0; }
   /// Whether a triangle that was drawn covers a place of the raster, exactly; one that is cut by the near plane is taken to.
   [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
 
@@ -57,6 +59,7 @@ class SurfaceRaster {
   SphereGroups surfaces_;
   std::vector<Corner> corners_;            ///< [vertex], as of the look that `look` says.
   std::vector<DepthPlane> planes_;         ///< [surface], likewise.
+  std::vector<std::uint8_t> front_;        ///< [surface], likewise.
   std::vector<std::uint32_t> surface_of_;  ///< [triangle]
   View none_;
   const View* view_ = &none_;
