@@ -15,6 +15,7 @@ constexpr float kMostLead = 0.5F;
 constexpr float kLeadCounts = 0.5F;
 constexpr float kPriorCounts = 0.01F;
 constexpr int kLeastExpected = 3;
+constexpr float kLeadMatches = 0.5F;  // of one match's share of what is explained
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -41,7 +42,9 @@ Reason gate(const Estimate& estimate, float lead, const geometry::Matrix6d& cova
   if (estimate.explained < parameters.explained_least) return Reason::kUnexplained;
   if (estimate.solution.rms_px > parameters.rms_most_px) return Reason::kResidual;
   if (estimate.prior_chi2 > parameters.prior_chi2_most) return Reason::kFarFromPrior;
-  if (lead < parameters.lead_least) return Reason::kAmbiguous;
+  // A single match more or less must not decide: with few of them the lead has to be larger.
+  const float lead_of_a_match = kLeadMatches / static_cast<float>(estimate.matches);
+  if (lead < std::max(static_cast<float>(parameters.lead_least), lead_of_a_match)) return Reason::kAmbiguous;
   if (evidence_of(estimate, lead) < parameters.evidence_least) return Reason::kAmbiguous;
   const double turn_most = parameters.sigma_most_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= parameters.sigma_most_m) ||

@@ -48,6 +48,9 @@ TEST(Gate, NamesWhatIsMissing) {
   EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
   EXPECT_EQ(judged(good(), 0.001F), Reason::kAmbiguous);
   estimate = good();
+  estimate.matches = 5;
+  EXPECT_EQ(judged(estimate, 0.05F), Reason::kAmbiguous) << "one match of five decides";
+  estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
 }

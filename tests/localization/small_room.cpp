@@ -143,29 +143,51 @@ Picture::Picture(const world::Map& map, const geometry::Pose& X_WC, const geomet
   RandomNumbers random(seed);
   const Eigen::Vector3d eye = X_WC.translation();
   const Eigen::Vector3d sun = Eigen::Vector3d(0.4, -0.6, 0.8).normalized();
+  struct Plane {
+    Eigen::Vector3d normal;
+    double offset;
+    Eigen::AlignedBox3d bounds;
+    std::vector<std::array<Eigen::Vector3d, 3>> triangles;
+    double value;
+  };
+  std::vector<Plane> planes;
+  for (const world::Surface& surface : map.surfaces) {
+    Plane& plane = planes.emplace_back();
+    plane.normal = surface.normal.cast<double>();
+    plane.offset = static_cast<double>(surface.offset_m);
+    plane.value = static_cast<double>(map.materials[surface.material].color.x()) *
+                  (0.75 + 0.25 * std::abs(plane.normal.dot(sun)));
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
+      auto& corners = plane.triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = map.vertices[map.triangles[surface.first_triangle + t][k]].cast<double>();
+        plane.bounds.extend(corners[k]);
+      }
+    }
+    plane.bounds.min().array() -= 1e-6;
+    plane.bounds.max().array() += 1e-6;
+  }
   const auto seen = [&](double u, double v) {
     const Eigen::Vector2d ideal = camera.ideal_of({u, v});
     const Eigen::Vector3d ray = X_WC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0);
     double nearest = std::numeric_limits<double>::max();
     double value = 0.0;
-    for (const world::Surface& surface : map.surfaces) {
-      const Eigen::Vector3d n = surface.normal.cast<double>();
-      const double slope = n.dot(ray);
+    for (const Plane& plane : planes) {
+      const double slope = plane.normal.dot(ray);
       if (std::abs(slope) < 1e-9) continue;
-      const double depth = (static_cast<double>(surface.offset_m) - n.dot(eye)) / slope;
+      const double depth = (plane.offset - plane.normal.dot(eye)) / slope;
       if (depth < 0.01 || depth >= nearest) continue;
       const Eigen::Vector3d p = eye + depth * ray;
-      for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
-        const world::Triangle& triangle = map.triangles[surface.first_triangle + t];
+      if (!plane.bounds.contains(p)) continue;
+      for (const auto& corners : plane.triangles) {
         bool within = true;
         for (std::size_t k = 0; k < 3 && within; ++k) {
-          const Eigen::Vector3d a = map.vertices[triangle[k]].cast<double>();
-          const Eigen::Vector3d b = map.vertices[triangle[(k + 1) % 3]].cast<double>();
-          within = (b - a).cross(p - a).dot(n) >= 0.0;
+          const Eigen::Vector3d& a = corners[k];
+          within = (corners[(k + 1) % 3] - a).cross(p - a).dot(plane.normal) >= 0.0;
         }
         if (!within) continue;
         nearest = depth;
-        value = static_cast<double>(map.materials[surface.material].color.x()) * (0.75 + 0.25 * std::abs(n.dot(sun)));
+        value = plane.value;
       }
     }
     return value;
