@@ -19,7 +19,7 @@ namespace cgsr::hal {
 
 /// Grows whenever anything in this header or in the interfaces that it names changes: a plug-in of another version is
 /// refused.
-inline constexpr int kSimulationVersion = 2;
+inline constexpr int kSimulationVersion = 3;
 
 /// The section [sim] of a robot's file.
 struct SimulationParameters {
@@ -55,9 +55,12 @@ struct FloorPose {
 struct ImageTruth {
   MonoTime stamp{};  ///< of the image.
   FloorPose robot;
-  double robot_forward_mps = 0.0;  ///< over the ground.
-  double robot_pitch_rad = 0.0;    ///< positive leans forward.
-  bool there = false;              ///< the object of the scenario exists at this moment.
+  std::array<double, 3> camera_m{};  ///< X_WC: its place,
+  std::array<double, 4> camera_wxyz{1.0, 0.0, 0.0,
+                                    0.0};  ///< and the unit quaternion that turns its axes into the world's.
+  double robot_forward_mps = 0.0;          ///< over the ground.
+  double robot_pitch_rad = 0.0;            ///< positive leans forward.
+  bool there = false;                      ///< the object of the scenario exists at this moment.
   FloorPose object;
   double object_mps = 0.0;  ///< its speed.
   double distance_m = 0.0;  ///< along the floor, from the camera to the middle of the object.

@@ -3,54 +3,97 @@
 #include <utility>
 
 namespace cgsr {
+namespace {
+
+constexpr Duration kPoseKeeps = seconds(0.5);  // a pose that no stage renewed for so long is none to drive by
+
+}  // namespace
 
 Decision VisionLoop::on_image(const ImageLease& image) {
   const auto& view = runner_.run(decode_, image);
-  const auto& matches = runner_.run(search_, view);  // chapter 3, Alg. 3.2
+  const auto& where = runner_.run(localize_, image, view);  // chapter 4: glCorrect
+  const auto& matches = runner_.run(search_, view);         // chapter 3, Alg. 3.2
   const auto& object = runner_.run(track_, image, view, matches);
-  return runner_.run(decide_, image, object);
+  return runner_.run(decide_, image, object, where);
 }
 
-VisionLoop::VisionLoop(runtime::StageRunner& runner, color::Tracker tracker, behavior::Follow follow,
-                       const Pinhole& camera, int max_width_px, int max_height_px)
+VisionLoop::VisionLoop(runtime::StageRunner& runner, VisionParts parts, behavior::Follow follow, const Pinhole& camera,
+                       int max_width_px, int max_height_px)
     : runner_(runner),
-      tracker_(std::move(tracker)),
+      parts_(std::move(parts)),
       follow_(follow),
+      no_labels_(parts_.tracker ? 0 : imaging::kColorCodes, 0),
       camera_(camera),
       reduced_(max_width_px, max_height_px),
       decode_("decode", [this](const ImageLease& image) { return decode(image); }),
+      localize_("localize", [this](WorkBudget& budget, const ImageLease& image,
+                                   const View& view) { return localize(budget, image, view); }),
       search_("search", [this](WorkBudget& budget, const View& view) { return search(budget, view); }),
       track_("track", [this](WorkBudget& budget, const ImageLease& image, const View& view,
                              const color::SearchResult& matches) { return track(budget, image, view, matches); }),
-      decide_("decide", [this](const ImageLease& image, const runtime::Aged<color::TrackedObject>& object) {
-        return decide(image, object);
-      }) {}
+      decide_("decide", [this](const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
+                               const runtime::Aged<Whereabouts>& where) { return decide(image, object, where); }) {}
+
+void VisionLoop::heard(const hal::Odometry& odometry) {
+  if (parts_.where) parts_.where->heard(odometry);
+}
 
 VisionLoop::View VisionLoop::decode(const ImageLease& image) {
   const ImageView& view = image.view();
-  const int factor = tracker_.reduction(view.width_px, view.height_px);
-  if (!imaging::reduce(view, factor, tracker_.labels(), reduced_)) return {};
+  const int factor = parts_.tracker ? parts_.tracker->reduction(view.width_px, view.height_px)
+                                    : imaging::reduction_for(view.width_px, view.height_px, view.width_px);
+  if (!imaging::reduce(view, factor, parts_.tracker ? parts_.tracker->labels() : no_labels_, reduced_)) return {};
   return {&reduced_};
 }
 
+Whereabouts VisionLoop::localize(WorkBudget& budget, const ImageLease& image, const View& view) {
+  Whereabouts where;
+  if (!parts_.where || view.reduced == nullptr) return where;
+  const auto& reduced = *view.reduced;
+  const ImageView grey{reduced.grey.data(), reduced.width_px, reduced.height_px, reduced.width_px, PixelFormat::kGrey8};
+  where.has_map = true;
+  where.camera = parts_.where->look(grey, image.stamp(), budget);
+  const geometry::Pose X_WR = parts_.where->robot_at(where.camera.X_WC);
+  const bool known = where.camera.state == localization::TrackState::kTracking ||
+                     where.camera.state == localization::TrackState::kRecovered;
+  where.robot = {known, X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR)};
+  return where;
+}
+
 color::SearchResult VisionLoop::search(WorkBudget& budget, const View& view) {
-  if (view.reduced == nullptr) return {};
-  return tracker_.search(*view.reduced, budget);
+  if (view.reduced == nullptr || !parts_.tracker) return {};
+  return parts_.tracker->search(*view.reduced, budget);
 }
 
 color::TrackedObject VisionLoop::track(WorkBudget& budget, const ImageLease& image, const View& view,
                                        const color::SearchResult& matches) {
-  if (view.reduced == nullptr) return {};
-  return tracker_.track(image.view(), *view.reduced, matches, budget);
+  if (view.reduced == nullptr || !parts_.tracker) return {};
+  return parts_.tracker->track(image.view(), *view.reduced, matches, budget);
 }
 
-Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object) {
+Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
+                            const runtime::Aged<Whereabouts>& where) {
   const ImageView& view = image.view();
   const Duration elapsed = last_image_ == MonoTime{} ? Duration::zero() : image.stamp() - last_image_;
   last_image_ = image.stamp();
+  Decision decision;
+  decision.object = object.value;
+  decision.object_age = object.age;
+  decision.where = where.value;
+  if (parts_.route) {
+    behavior::FloorBelief here = where.value.robot;
+    here.known = here.known && where.age <= kPoseKeeps;
+    decision.route = parts_.route->decide(here, elapsed);
+    decision.goal = decision.route.goal;
+    decision.halt = decision.route.halt;
+    return decision;
+  }
   const behavior::Sighting sighting{object.value.found, object.value.box, object.age,   view.width_px,
                                     view.height_px,     camera_.fx_px,    camera_.cx_px};
-  return {follow_.decide(sighting, elapsed), object.value, object.age};
+  decision.follow = follow_.decide(sighting, elapsed);
+  decision.goal = decision.follow.goal;
+  decision.halt = decision.follow.halt;
+  return decision;
 }
 
 }  // namespace cgsr

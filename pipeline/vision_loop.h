@@ -1,19 +1,34 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
 
 #include "pipeline/behavior/follow.h"
+#include "pipeline/behavior/route.h"
 #include "pipeline/color/tracker.h"
 #include "pipeline/imaging/reduce.h"
 #include "pipeline/runtime/stage.h"
+#include "pipeline/where_am_i.h"
 #include "platform/image_lease.h"
 #include "platform/parameters.h"
 
 namespace cgsr {
 
+/// Where the robot believes to be.
+struct Whereabouts {
+  bool has_map = false;  ///< else nothing below means anything.
+  localization::TrackedPose camera;
+  behavior::FloorBelief robot;
+};
+
 /// What one image led to.
 struct Decision {
+  behavior::Velocity goal;
+  bool halt = false;  ///< forward motion ends at once.
   behavior::FollowDecision follow;
+  behavior::RouteDecision route;
+  Whereabouts where;
   color::TrackedObject object;
   Duration
       object_age{};  ///< since the image in which `object` was looked for; more than zero when its stage was skipped.
@@ -35,19 +50,29 @@ struct Pinhole {
   }
 };
 
+/// What a vision loop is made of. Each may be missing; what would do its work then has nothing to say.
+struct VisionParts {
+  std::optional<color::Tracker> tracker;  ///< chapter 3.
+  std::unique_ptr<WhereAmI> where;        ///< chapter 4.
+  std::optional<behavior::Route> route;   ///< the task is to drive it; without one, to follow the object.
+};
+
 /// One image through Figure 5.1, as far as it is built: every line of on_image is a stage with a row in the schedule.
 ///
 /// Threads: one, the vision thread. After construction nothing here allocates.
 class VisionLoop {
  public:
   /// \param runner  outlives the loop. \param max_width_px, max_height_px  the largest image that will come.
-  VisionLoop(runtime::StageRunner& runner, color::Tracker tracker, behavior::Follow follow, const Pinhole& camera,
+  VisionLoop(runtime::StageRunner& runner, VisionParts parts, behavior::Follow follow, const Pinhole& camera,
              int max_width_px, int max_height_px);
   VisionLoop(const VisionLoop&) = delete;
   VisionLoop& operator=(const VisionLoop&) = delete;
 
   /// Gives every stage its row in the runner's schedule; to be called once, before the first image.
-  Result<void> bind() { return runner_.bind(decode_, search_, track_, decide_); }
+  Result<void> bind() { return runner_.bind(decode_, localize_, search_, track_, decide_); }
+
+  /// What the base reported; to be told before the image that is exposed about then.
+  void heard(const hal::Odometry& odometry);
 
   /// Image in, decision out. Valid between the runner's begin_frame and end_frame.
   Decision on_image(const ImageLease& image);
@@ -59,25 +84,30 @@ class VisionLoop {
   };
 
   View decode(const ImageLease& image);
+  Whereabouts localize(WorkBudget& budget, const ImageLease& image, const View& view);
   color::SearchResult search(WorkBudget& budget, const View& view);
   color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view,
                              const color::SearchResult& matches);
-  Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object);
+  Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
+                  const runtime::Aged<Whereabouts>& where);
 
   template <class Output, class... Inputs>
   using StageOf = runtime::Stage<std::function<Output(Inputs...)>>;
 
   runtime::StageRunner& runner_;
-  color::Tracker tracker_;
+  VisionParts parts_;
   behavior::Follow follow_;
+  imaging::LabelTable no_labels_;  // where no tracker says which colours matter
   Pinhole camera_;
   imaging::ReducedImage reduced_;
   MonoTime last_image_{};
 
   StageOf<View, const ImageLease&> decode_;
+  StageOf<Whereabouts, WorkBudget&, const ImageLease&, const View&> localize_;
   StageOf<color::SearchResult, WorkBudget&, const View&> search_;
   StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&, const color::SearchResult&> track_;
-  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&> decide_;
+  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&, const runtime::Aged<Whereabouts>&>
+      decide_;
 };
 
 }  // namespace cgsr

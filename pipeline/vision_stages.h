@@ -7,6 +7,7 @@ namespace cgsr {
 /// The schedule of the vision loop, a row per stage in the order in which it runs them ([stage.*] in a robot's file).
 struct VisionStages {
   runtime::StageParameters decode{1, 0, 4000, 0, runtime::OnOverrun::kStopMotion};
+  runtime::StageParameters localize{1, 0, 10000, 0, runtime::OnOverrun::kSkip};
   runtime::StageParameters search{1, 0, 9000, 0, runtime::OnOverrun::kSkip};
   runtime::StageParameters track{1, 0, 7000, 0, runtime::OnOverrun::kSkip};
   runtime::StageParameters decide{1, 0, 1000, 0, runtime::OnOverrun::kStopMotion};
@@ -14,6 +15,7 @@ struct VisionStages {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("decode", self.decode, "Camera image to grey and colour labels");
+    visit.section("localize", self.localize, "Where the robot is: the pose corrected against the map (chapter 4)");
     visit.section("search", self.search, "Windows that look like the object, in the whole image (Alg. 3.2)");
     visit.section("track", self.track, "Which of them it is, and the box that fits");
     visit.section("decide", self.decide, "What the robot does about it");

@@ -9,11 +9,14 @@
 #include "hal/replay/replay_camera.h"
 #include "pipeline/color/model_file.h"
 #include "pipeline/runtime/schedule.h"
+#include "pipeline/world/load.h"
 #include "platform/config/canonical.h"
 #include "platform/config/template.h"
 #include "src/command.h"
 #include "src/config/load.h"
 #include "src/config/robot_docs.h"
+#include "src/input/camera_file.h"
+#include "src/input/robot_calibration.h"
 #include "src/output/text_file.h"
 #include "src/robot/simulation_plugin.h"
 
@@ -55,6 +58,18 @@ std::optional<hal::CameraMode> camera_mode(const config::Robot& robot, std::vect
   return std::nullopt;
 }
 
+/// What chapter 4 needs.
+void look_at_map(const config::RobotLocalization& known, std::vector<std::string>& problems) {
+  if (known.map.empty()) return;
+  if (const auto map = world::load_map(known.map)) {
+    fmt::print("map       {} surfaces, {} edges\n", map->surfaces.size(), map->edges.size());
+  } else {
+    problems.push_back(map.error().message);
+  }
+  if (const auto camera = read_camera(known.camera); !camera) problems.push_back(camera.error().message);
+  if (const auto X_RC = read_mount(known.mount); !X_RC) problems.push_back(X_RC.error().message);
+}
+
 /// Looks at everything that a run would need, each as far as it can be looked at without moving anything.
 std::vector<std::string> problems_of(const config::Robot& robot) {
   std::vector<std::string> problems;
@@ -63,7 +78,11 @@ std::vector<std::string> problems_of(const config::Robot& robot) {
     period = mode->frame_period;
     fmt::print("camera    {}x{} at {:.2f} Hz\n", mode->width_px, mode->height_px, 1.0 / to_seconds(period));
   }
-  if (robot.run.model.empty() && !robot.run.learn.empty()) {
+  if (robot.task.kind != config::TaskKind::kFollow) {
+    const auto places = behavior::parse_places(robot.task.route.places_m);
+    if (places) fmt::print("route     {} places\n", places->size());
+    if (!places) problems.push_back(fmt::format("task.route.places_m: {}", places.error().message));
+  } else if (robot.run.model.empty() && !robot.run.learn.empty()) {
     fmt::print("object    learned from the first image\n");
   } else if (robot.run.model.empty()) {
     problems.emplace_back("run.model is empty and no --model is given: nothing to follow");
@@ -73,6 +92,7 @@ std::vector<std::string> problems_of(const config::Robot& robot) {
   } else {
     problems.push_back(model.error().message);
   }
+  look_at_map(robot.localization, problems);
   if (auto schedule = runtime::Schedule::make(runtime::rows_of(robot.stage), period)) {
     fmt::print("{}", runtime::to_text(*schedule));
   } else {

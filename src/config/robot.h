@@ -12,6 +12,7 @@
 #include "pipeline/vision_loop.h"
 #include "pipeline/vision_stages.h"
 #include "src/config/color.h"
+#include "src/config/whereabouts.h"
 
 namespace cgsr::config {
 
@@ -98,6 +99,8 @@ struct Robot {
   Switches switches;
   VisionStages stage;
   Color color;
+  RobotLocalization localization;
+  Task task;
   behavior::FollowParameters follow;
   MotionParameters motion;
 
@@ -111,6 +114,8 @@ struct Robot {
     visit.section("switches", self.switches, "Named lines");
     visit.section("stage", self.stage, "The schedule: which stage runs in which frame and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
+    visit.section("localization", self.localization, "Where the robot is (chapter 4)");
+    visit.section("task", self.task, "What the robot does");
     visit.section("follow", self.follow, "Following an object: how close, how fast, and what to do when it is gone");
     visit.section("motion", self.motion, "How fast the wheels may be told to go, and when they are told to stop");
   }
@@ -118,6 +123,12 @@ struct Robot {
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
+    if (task.kind == TaskKind::kRoute && localization.map.empty()) {
+      return "task.kind = \"route\" needs a map (localization.map): places mean nothing to a robot without one";
+    }
+    if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
+      return "localization.map needs localization.camera and localization.mount beside it";
+    }
     if (camera.source == CameraSource::kSim) {
       return live ? "run.pace = \"live\" does not go with camera.source = \"sim\": lock_step or real_time" : "";
     }

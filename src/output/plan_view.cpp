@@ -17,6 +17,7 @@ constexpr double kSight_m = 5.0;
 constexpr std::size_t kTrail = 1500;
 const cv::Scalar kRobot(40, 40, 230);
 const cv::Scalar kObject(60, 200, 60);
+const cv::Scalar kBelief(230, 160, 40);
 const cv::Scalar kDark(30, 30, 30);
 const cv::Scalar kViewTint(120, 235, 255);
 
@@ -64,6 +65,7 @@ const cv::Mat& PlanView::draw(const PlanFacts& facts) {
   draw_trails();
   draw_object(facts);
   draw_robot(facts);
+  if (facts.believed) draw_belief(*facts.believed);
   const std::string text =
       fmt::format("{:+.2f} m/s  {:+.2f} rad/s", facts.commanded.forward_mps, facts.commanded.left_radps);
   cv::putText(picture_, text, {kMargin_px + 6, picture_.rows - 10}, cv::FONT_HERSHEY_SIMPLEX, 0.43, {255, 255, 255}, 1,
@@ -100,6 +102,15 @@ void PlanView::draw_object(const PlanFacts& facts) {
     cv::circle(picture_, center, cvRound(facts.set_distance_m * px_per_m_ * (1 << kShift)), kObject, 1, cv::LINE_AA,
                kShift);
   }
+}
+
+void PlanView::draw_belief(const hal::FloorPose& believed) {
+  const cv::Point center = at(believed.x_m, believed.y_m);
+  const int radius = cvRound(0.25 * px_per_m_ * (1 << kShift));
+  cv::circle(picture_, center, radius, kBelief, 2, cv::LINE_AA, kShift);
+  cv::line(picture_, center,
+           at(believed.x_m + 0.4 * std::cos(believed.heading_rad), believed.y_m + 0.4 * std::sin(believed.heading_rad)),
+           kBelief, 2, cv::LINE_AA, kShift);
 }
 
 void PlanView::draw_robot(const PlanFacts& facts) {

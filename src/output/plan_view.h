@@ -13,9 +13,10 @@ namespace cgsr::app {
 /// What is drawn on the plan of one image.
 struct PlanFacts {
   hal::ImageTruth truth;
-  bool found = false;           ///< the robot sees the object: it is drawn full, else as an outline.
-  hal::Twist commanded;         ///< drawn as the way of the next two seconds.
-  double set_distance_m = 0.0;  ///< 0: not drawn.
+  bool found = false;                      ///< the robot sees the object: it is drawn full, else as an outline.
+  std::optional<hal::FloorPose> believed;  ///< where the robot believes to be: an outline.
+  hal::Twist commanded;                    ///< drawn as the way of the next two seconds.
+  double set_distance_m = 0.0;             ///< 0: not drawn.
 };
 
 /// The simulated home from above: world x points up, y to the left, as the robot looks at the start. Not for the frame
@@ -36,6 +37,7 @@ class PlanView {
   void draw_view(const hal::FloorPose& robot);
   void draw_trails();
   void draw_robot(const PlanFacts& facts);
+  void draw_belief(const hal::FloorPose& believed);
   void draw_object(const PlanFacts& facts);
 
   double x_max_m_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/core.h>
@@ -10,9 +11,21 @@
 namespace cgsr::robot {
 namespace {
 
-std::string row_of(const VisionReport& report, const MotionStatus& motion) {
+/// Empty without a map: a column that means nothing says nothing.
+std::string pose_columns(const Whereabouts& where) {
+  if (!where.has_map) return ",,,,,,";
+  const auto& camera = where.camera;
+  return fmt::format("{},{},{},{:.4f},{:.4f},{:.5f},{:.4f}", name_of(camera.state), camera.correction.corrected ? 1 : 0,
+                     name_of(camera.correction.reason), where.robot.x_m, where.robot.y_m, where.robot.heading_rad,
+                     std::sqrt(camera.covariance.topLeftCorner<2, 2>().trace()));
+}
+
+std::string_view state_of(const Decision& decision, bool route) {
+  return route ? behavior::text(decision.route.state) : behavior::text(decision.follow.state);
+}
+
+std::string row_of(const VisionReport& report, const MotionStatus& motion, bool route) {
   const auto& object = report.decision.object;
-  const auto& follow = report.decision.follow;
   std::string row =
       fmt::format("{},{:.6f},", report.record.image_sequence, to_seconds(report.record.stamp.time_since_epoch()));
   if (object.found) {
@@ -22,9 +35,10 @@ std::string row_of(const VisionReport& report, const MotionStatus& motion) {
   } else {
     row += "0,,,,,,,,,";
   }
-  return row + fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{},{}", behavior::text(follow.state),
-                           follow.goal.forward_mps, follow.goal.left_radps, motion.commanded.forward_mps,
-                           motion.commanded.left_radps, motion.armed ? 1 : 0, text(motion.cause));
+  row += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{},{},", state_of(report.decision, route),
+                     report.decision.goal.forward_mps, report.decision.goal.left_radps, motion.commanded.forward_mps,
+                     motion.commanded.left_radps, motion.armed ? 1 : 0, text(motion.cause));
+  return row + pose_columns(report.decision.where);
 }
 
 std::string stage_times(const runtime::FrameRecord& record, const runtime::StageTable& table) {
@@ -40,7 +54,7 @@ std::string stage_times(const runtime::FrameRecord& record, const runtime::Stage
 
 std::string run_csv_head() {
   return "frame,stamp_s,found,x,y,width,height,divergence,light_r,light_g,light_b,state,goal_mps,goal_radps,"
-         "commanded_mps,commanded_radps,armed,stop_cause";
+         "commanded_mps,commanded_radps,armed,stop_cause,pose,corrected,reason,x_m,y_m,heading_rad,sigma_m";
 }
 
 void HousekeepingTask::step() {
@@ -80,12 +94,16 @@ void HousekeepingTask::take(const VisionReport& report) {
                  behavior::text(decision.follow.state), behavior::text(decision.follow.reason));
     state_ = decision.follow.state;
   }
+  watch_pose(report);
   tally_.found += decision.object.found ? 1 : 0;
   const auto light =
       lights_.add(report.record.stamp, decision.object.found ? std::optional(decision.object.light) : std::nullopt);
   std::optional<hal::ImageTruth> truth;
   if (outputs_.simulation != nullptr) truth = outputs_.simulation->truth(report.record.stamp);
-  if (truth) truths_.add(*truth, decision.object, tally_.last_motion);
+  if (truth) {
+    truths_.add(*truth, decision.object, tally_.last_motion);
+    poses_.add(*truth, decision.where, tally_.last_motion.odometry);
+  }
   write_row(report);
   if (auto picture = picture_of(report.record.image_sequence)) {
     ++tally_.pictures;
@@ -95,6 +113,20 @@ void HousekeepingTask::take(const VisionReport& report) {
     }
     draw(report, *picture, light, truth);
   }
+}
+
+void HousekeepingTask::watch_pose(const VisionReport& report) {
+  const auto& decision = report.decision;
+  if (decision.route.state != route_) {
+    spdlog::info("image {}: route: {} -> {}", report.record.image_sequence, behavior::text(route_),
+                 behavior::text(decision.route.state));
+    route_ = decision.route.state;
+  }
+  const auto& camera = decision.where.camera;
+  if (!decision.where.has_map || camera.state == pose_) return;
+  spdlog::info("image {}: pose: {} -> {}{}{}", report.record.image_sequence, name_of(pose_), name_of(camera.state),
+               camera.correction.reason == localization::Reason::kNone ? "" : ": ", name_of(camera.correction.reason));
+  pose_ = camera.state;
 }
 
 std::optional<ImageLease> HousekeepingTask::picture_of(std::uint64_t sequence) {
@@ -107,7 +139,7 @@ std::optional<ImageLease> HousekeepingTask::picture_of(std::uint64_t sequence) {
 }
 
 void HousekeepingTask::write_row(const VisionReport& report) {
-  const std::string row = row_of(report, tally_.last_motion);
+  const std::string row = row_of(report, tally_.last_motion, outputs_.drives_route);
   outputs_sum_.add(row.data(), row.size());
   if (outputs_.csv) note(outputs_.csv->add_line(row));
 }
@@ -123,9 +155,16 @@ void HousekeepingTask::draw(const VisionReport& report, const ImageLease& pictur
   facts.divergence = decision.object.divergence;
   const MotionStatus& motion = tally_.last_motion;
   facts.lines.push_back(fmt::format("{}   commanded {:+.2f} m/s {:+.2f} rad/s   {}",
-                                    behavior::text(decision.follow.state), motion.commanded.forward_mps,
+                                    state_of(decision, outputs_.drives_route), motion.commanded.forward_mps,
                                     motion.commanded.left_radps,
                                     motion.cause == StopCause::kNone ? "free to move" : text(motion.cause)));
+  if (decision.where.has_map) {
+    const auto& camera = decision.where.camera;
+    facts.lines.push_back(fmt::format("pose {}   x {:.2f} y {:.2f} m  heading {:.1f} deg   {} matches",
+                                      name_of(camera.state), decision.where.robot.x_m, decision.where.robot.y_m,
+                                      decision.where.robot.heading_rad * 180.0 / std::numbers::pi,
+                                      camera.correction.matches));
+  }
   facts.lines.push_back(stage_times(report.record, table_));
   if (truth && truth->in_view) facts.truth = truth->box;
   const cv::Mat& overlay = outputs_.overlay->draw(picture.view(), facts);
@@ -135,6 +174,10 @@ void HousekeepingTask::draw(const VisionReport& report, const ImageLease& pictur
   plan.found = decision.object.found;
   plan.commanded = motion.commanded;
   plan.set_distance_m = outputs_.set_distance_m;
+  if (decision.where.has_map) {
+    plan.believed =
+        hal::FloorPose{decision.where.robot.x_m, decision.where.robot.y_m, decision.where.robot.heading_rad};
+  }
   cv::hconcat(overlay, outputs_.plan->draw(plan), side_by_side_);
   note(outputs_.video->add(side_by_side_));
 }

@@ -13,6 +13,7 @@
 #include "src/output/text_file.h"
 #include "src/output/video_writer.h"
 #include "src/robot/links.h"
+#include "src/robot/pose_tally.h"
 #include "src/robot/truth_tally.h"
 
 namespace cgsr::robot {
@@ -24,7 +25,8 @@ struct RunOutputs {
   std::optional<app::Overlay> overlay;          ///< there whenever `video` is.
   std::optional<app::PlanView> plan;            ///< beside it; only of a simulated home.
   const hal::Simulation* simulation = nullptr;  ///< where truth comes from; null: there is none.
-  double set_distance_m = 1.0;                  ///< that the robot shall keep, for truth and plan.
+  bool drives_route = false;                    ///< the task is a route, not an object.
+  double set_distance_m = 0.0;  ///< that the robot shall keep, for truth and plan; 0: it follows nothing.
 };
 
 /// What a run came to.
@@ -57,7 +59,12 @@ class HousekeepingTask {
   [[nodiscard]] const runtime::StageTable& table() const { return table_; }
   /// \return what the run came to by what was really there; null without a simulation.
   [[nodiscard]] const TruthFigures* truth() const {
-    return outputs_.simulation == nullptr ? nullptr : &truths_.figures();
+    return outputs_.simulation == nullptr || outputs_.set_distance_m <= 0.0 ? nullptr : &truths_.figures();
+  }
+
+  /// \return how well it knew where it was; null without a simulation or a map.
+  [[nodiscard]] const PoseFigures* pose_truth() const {
+    return poses_.figures().images == 0 ? nullptr : &poses_.figures();
   }
 
   /// SHA-256 over the rows of the CSV and over the pixels of the images. End the sums.
@@ -67,6 +74,7 @@ class HousekeepingTask {
  private:
   void take(const MotionStatus& status);
   void take(const VisionReport& report);
+  void watch_pose(const VisionReport& report);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
   void write_row(const VisionReport& report);
   void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,
@@ -78,10 +86,13 @@ class HousekeepingTask {
   RunOutputs outputs_;
   RunTally tally_;
   TruthTally truths_;
+  PoseTally poses_;
   cv::Mat side_by_side_;
   color::LightHistory lights_;
   std::optional<ImageLease> next_picture_;
   behavior::FollowState state_ = behavior::FollowState::kWaiting;
+  behavior::RouteState route_ = behavior::RouteState::kNowhere;
+  localization::TrackState pose_ = localization::TrackState::kUnsure;
   config::Sha256 outputs_sum_;
   config::Sha256 inputs_sum_;
 };

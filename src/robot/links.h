@@ -40,6 +40,8 @@ struct Links {
   std::atomic<bool> images_in_time{false};
   runtime::MotionStop motion_stop;  ///< stages of the safety chain -> motion.
 
+  Ring<hal::Odometry, 64, Overflow::kDiscard> odometry;  ///< motion -> vision.
+
   Ring<ArmRequest, 8> arm_requests;  ///< switch worker -> motion.
 
   Ring<VisionReport, 64, Overflow::kDiscard> reports;  ///< vision -> housekeeping.

@@ -16,6 +16,7 @@ void MotionTask::step(MonoTime now) {
   }
   const MotionStatus status = loop_.step(now, inputs);
   if (status.armed) arm_ = false;
+  links_.odometry.push(status.odometry);
   links_.motions.push(status);
 }
 

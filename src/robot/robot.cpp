@@ -1,5 +1,6 @@
 #include "src/robot/robot.h"
 
+#include <numbers>
 #include <utility>
 
 #include <fmt/core.h>
@@ -10,6 +11,9 @@
 #include "hal/rmp/rmp_drive.h"
 #include "pipeline/color/learn.h"
 #include "pipeline/color/model_file.h"
+#include "pipeline/world/load.h"
+#include "src/input/camera_file.h"
+#include "src/input/robot_calibration.h"
 #include "src/robot/simulation_plugin.h"
 
 namespace cgsr::robot {
@@ -72,11 +76,61 @@ Result<color::ColorModel> Robot::learn_or_load() {
   return std::move(learned->model);
 }
 
-Result<void> Robot::make_loops() {
+/// The object, where the task is to follow one.
+Result<void> Robot::make_tracker(VisionParts& parts, std::optional<behavior::LearnedSize>& size) {
+  if (config_.task.kind != config::TaskKind::kFollow) return {};
   const auto model = learn_or_load();
   if (!model) return tl::unexpected(model.error());
   auto tracker = color::Tracker::create(*model, config_.color.track, mode_.width_px, mode_.height_px);
   if (!tracker) return tl::unexpected(tracker.error());
+  parts.tracker.emplace(std::move(*tracker));
+  size = behavior::LearnedSize{model->width_px, model->height_px};
+  return {};
+}
+
+/// The map, where the robot has one.
+Result<void> Robot::make_whereabouts(VisionParts& parts) {
+  const config::RobotLocalization& known = config_.localization;
+  if (known.map.empty()) return {};
+  auto map = world::load_map(known.map);
+  if (!map) return tl::unexpected(map.error());
+  const auto camera = app::read_camera(known.camera);
+  if (!camera) return tl::unexpected(camera.error());
+  const auto X_RC = app::read_mount(known.mount);
+  if (!X_RC) return tl::unexpected(X_RC.error());
+  if (camera->width_px * mode_.height_px != camera->height_px * mode_.width_px) {
+    return fail(fmt::format("{}: is of a camera with {}x{} px, the images have {}x{}: another camera's file?",
+                            known.camera, camera->width_px, camera->height_px, mode_.width_px, mode_.height_px));
+  }
+  const config::StartPose& start = known.start;
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  KnownSelf self;
+  notes_.push_back(fmt::format("map {}: {} surfaces, {} edges", known.map, map->surfaces.size(), map->edges.size()));
+  self.map = std::move(*map);
+  self.camera = camera->scaled_to(mode_.width_px, mode_.height_px);
+  self.X_RC = *X_RC;
+  self.axle_height_m = known.axle_height_m;
+  self.localizer = known.localizer;
+  self.tracking = known.tracker;
+  localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
+  sigmas.x_m = sigmas.y_m = start.sigma_m;
+  sigmas.heading_rad = start.sigma_deg * kDegree;
+  self.start = localization::prior_at(
+      geometry::pose_on_floor(start.x_m, start.y_m, start.heading_deg * kDegree) * *X_RC, sigmas);
+  parts.where = std::make_unique<WhereAmI>(std::move(self));
+  return {};
+}
+
+Result<void> Robot::make_loops() {
+  VisionParts parts;
+  std::optional<behavior::LearnedSize> learned;
+  if (auto made = make_tracker(parts, learned); !made) return made;
+  if (auto made = make_whereabouts(parts); !made) return made;
+  if (config_.task.kind == config::TaskKind::kRoute) {
+    auto places = behavior::parse_places(config_.task.route.places_m);
+    if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
+    parts.route.emplace(config_.task.route, std::move(*places));
+  }
   auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
   if (!schedule) return tl::unexpected(schedule.error());
 
@@ -84,8 +138,7 @@ Result<void> Robot::make_loops() {
   const bool live = config_.run.pace == config::Pace::kLive;
   runner_ = std::make_unique<runtime::StageRunner>(
       real_clock_, *schedule, live ? runtime::BudgetSource::kClock : runtime::BudgetSource::kUnits, links_.motion_stop);
-  const behavior::LearnedSize learned{model->width_px, model->height_px};
-  vision_ = std::make_unique<VisionLoop>(*runner_, std::move(*tracker), behavior::Follow(config_.follow, learned),
+  vision_ = std::make_unique<VisionLoop>(*runner_, std::move(parts), behavior::Follow(config_.follow, learned),
                                          config_.camera.pinhole, mode_.width_px, mode_.height_px);
   return vision_->bind();
 }
@@ -98,9 +151,10 @@ Result<void> Robot::open_outputs() {
     if (auto head = csv->add_line(run_csv_head()); !head) return head;
     outputs.csv.emplace(std::move(*csv));
   }
+  outputs.drives_route = config_.task.kind == config::TaskKind::kRoute;
   if (simulation_) {
     outputs.simulation = simulation_.get();
-    outputs.set_distance_m = config_.follow.distance_m;
+    outputs.set_distance_m = config_.task.kind == config::TaskKind::kFollow ? config_.follow.distance_m : 0.0;
   }
   if (!options_.video.empty()) {
     outputs.overlay.emplace(mode_.width_px, mode_.height_px);

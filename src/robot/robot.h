@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,8 @@ class Robot {
   Result<void> open_camera();
   Result<void> open_simulation();
   Result<color::ColorModel> learn_or_load();
+  Result<void> make_tracker(VisionParts& parts, std::optional<behavior::LearnedSize>& size);
+  Result<void> make_whereabouts(VisionParts& parts);
   Result<void> make_loops();
   Result<void> open_outputs();
   Result<void> open_base();

@@ -1,5 +1,7 @@
 #include "src/robot/run_report.h"
 
+#include <numbers>
+
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +16,7 @@ template <class Visitor>
 void visit_rings(const Links& links, Visitor visit) {
   visit("images", links.images.statistics());
   visit("goals", links.goals.statistics());
+  visit("odometry", links.odometry.statistics());
   visit("arm_requests", links.arm_requests.statistics());
   visit("reports", links.reports.statistics());
   visit("pictures", links.pictures.statistics());
@@ -66,6 +69,32 @@ Json truth_json(const TruthFigures& truth) {
           {"longest_command_when_nearer_s", or_null(truth.longest_command_when_nearer_s)}};
 }
 
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+Json pose_json(const PoseFigures& pose) {
+  return {{"images", pose.images},
+          {"corrected_share", share(pose.corrected, pose.images)},
+          {"lost", pose.lost},
+          {"mean_cm", 100.0 * pose.mean_m},
+          {"worst_cm", 100.0 * pose.worst_m},
+          {"worst_at_s", pose.worst_s},
+          {"mean_deg", kDegrees * pose.mean_rad},
+          {"worst_deg", kDegrees * pose.worst_rad},
+          {"way_m", pose.way_m},
+          {"odometry_ends_off_cm", 100.0 * pose.odometry_ends_off_m}};
+}
+
+std::string pose_text(const PoseFigures& pose) {
+  return fmt::format(
+      "pose by truth, from the first correction on: {} images, corrected in {:.1f} %, lost {} times; off by {:.1f} cm "
+      "and "
+      "{:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg at worst\n{:.1f} m driven; odometry alone would "
+      "have "
+      "ended {:.0f} cm off\n\n",
+      pose.images, 100.0 * share(pose.corrected, pose.images), pose.lost, 100.0 * pose.mean_m, kDegrees * pose.mean_rad,
+      100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_ends_off_m);
+}
+
 std::string in_words(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.2f}{}", *value, unit) : "never happened";
 }
@@ -110,6 +139,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   json["found"] = tally.found;
   json["motion"] = motion_json(tally);
   if (const TruthFigures* truth = housekeeping.truth()) json["truth"] = truth_json(*truth);
+  if (const PoseFigures* pose = housekeeping.pose_truth()) json["pose"] = pose_json(*pose);
   json["stages"] = stages_json(housekeeping.table());
   visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
     json["rings"][name] = {{"capacity", ring.capacity},
@@ -135,6 +165,7 @@ std::string summary_text(Robot& robot, const std::string& ended_by) {
   text += fmt::format("last command {:+.2f} m/s {:+.2f} rad/s ({})\n\n", last.commanded.forward_mps,
                       last.commanded.left_radps, cgsr::text(last.cause));
   if (const TruthFigures* truth = housekeeping.truth()) text += truth_text(*truth);
+  if (const PoseFigures* pose = housekeeping.pose_truth()) text += pose_text(*pose);
   text += runtime::to_text(housekeeping.table());
   text += "\nring          capacity  high water  pushed  dropped  skipped\n";
   visit_rings(robot.links(), [&text](const char* name, const RingStatistics& ring) {

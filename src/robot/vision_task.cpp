@@ -8,11 +8,12 @@ bool VisionTask::step() {
   auto image = links_.images.pop_newest();
   if (!image) return false;
   const MonoTime started = clock_.now();
+  while (const auto odometry = links_.odometry.pop()) loop_.heard(*odometry);
   runner_.begin_frame({image->stamp(), image->sequence(), true});
   const Decision decision = loop_.on_image(*image);
   // A goal that finds no room is lost: the newest one is what counts, and without any the dead-man stops the robot.
-  static_cast<void>(links_.goals.push(
-      Goal{{decision.follow.goal.forward_mps, decision.follow.goal.left_radps}, image->stamp(), decision.follow.halt}));
+  static_cast<void>(
+      links_.goals.push(Goal{{decision.goal.forward_mps, decision.goal.left_radps}, image->stamp(), decision.halt}));
   in_time_.dealt_with(image->sequence(), started, clock_.now());
   links_.images_in_time.store(in_time_.enough(), std::memory_order_relaxed);
   report(decision, std::move(*image));

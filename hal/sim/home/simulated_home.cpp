@@ -203,7 +203,7 @@ void SimulatedHome::take_image(std::uint64_t number, MonoTime stamp, const YuyvB
   for (int i = 0; i < count; ++i) moments.push_back(moment_at(stamp + seconds(sensor_.exposure_s * (i + 0.5) / count)));
   const double luma =
       photographer_->take(moments, sensor_, {static_cast<std::uint32_t>(parameters_.seed), number}, buffer);
-  remember(stamp, stamp + seconds(0.5 * sensor_.exposure_s), moments.back());
+  remember(stamp, stamp + seconds(0.5 * sensor_.exposure_s), moments[moments.size() / 2]);
   if (scenario_.spec.camera.automatic_exposure) sensor_ = AutoExposure{}.next(sensor_, luma);
 }
 
@@ -212,6 +212,9 @@ void SimulatedHome::remember(MonoTime stamp, MonoTime middle, const Moment& mome
   hal::ImageTruth truth;
   truth.stamp = stamp;
   truth.robot = {base.x_m, base.y_m, base.heading_rad};
+  const Eigen::Quaterniond q(moment.X_WC.linear());
+  for (int i = 0; i < 3; ++i) truth.camera_m[static_cast<std::size_t>(i)] = moment.X_WC.translation()(i);
+  truth.camera_wxyz = {q.w(), q.x(), q.y(), q.z()};
   truth.robot_forward_mps = base.velocity.forward_mps;
   truth.robot_pitch_rad = base.pitch_rad;
   if (object_ >= 0) {

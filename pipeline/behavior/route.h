@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/behavior/follow.h"
+#include "platform/error.h"
+#include "platform/parameters.h"
+#include "platform/time.h"
+
+namespace cgsr::behavior {
+
+struct RouteParameters {
+  std::string places_m;
+  bool round = true;
+  double reached_m = 0.15;
+  double forward_mps = 0.35;
+  double approach_per_s = 0.8;
+  double turn_per_s = 1.2;
+  double turn_limit_radps = 0.6;
+  double turn_first_rad = 0.4;
+  double acceleration_limit_mps2 = 0.4;
+  double turn_acceleration_limit_radps2 = 1.5;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.text("places_m", self.places_m,
+               "\"x, y; x, y; ...\" in the world, in order; empty: the robot stays where it is");
+    visit.flag("round", self.round, "after the last place the first again; off: it ends there");
+    visit.number("reached_m", self.reached_m, {0.02, 2.0}, "m", "so near a place counts as reached");
+    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "speed on the way");
+    visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
+                 "speed for each metre that is left, where that is less");
+    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
+    visit.number("turn_limit_radps", self.turn_limit_radps, {0.0, 2.0}, "rad/s", "fastest turn");
+    visit.number("turn_first_rad", self.turn_first_rad, {0.05, 3.2}, "rad",
+                 "bearing at which the robot only turns; the speed falls linearly on the way there");
+    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.05, 3.0}, "m/s²",
+                 "steepest change of speed");
+    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 10.0}, "rad/s²",
+                 "steepest change of the turn rate");
+  }
+};
+
+struct Place {
+  double x_m = 0.0;
+  double y_m = 0.0;
+};
+
+/// \return the places of a text like "1.5, 2; 3, 4.25"; or what is wrong with it: the piece, its number, what was expected.
+Result<std::vector<Place>> parse_places(std::string_view text);
+
+/// Where the robot believes to be on its floor.
+struct FloorBelief {
+  bool known = false;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_rad = 0.0;
+};
+
+enum class RouteState : std::uint8_t {
+  kNowhere,  ///< its pose is not known: it stands.
+  kDriving,  ///< on the way to a place.
+  kArrived,  ///< at the last place.
+};
+
+std::string_view text(RouteState state);
+
+struct RouteDecision {
+  Velocity goal;
+  bool halt = false;  ///< the pose is not known: no ramp.
+  RouteState state = RouteState::kNowhere;
+  int place = 0;  ///< that it is on the way to, from 0.
+};
+
+/// From place to place in the world, straight, by the pose that chapter 4 gives. It sees no obstacles: the way must be free.
+///
+/// Threads: one; decide allocates nothing.
+class Route {
+ public:
+  Route(const RouteParameters& parameters, std::vector<Place> places)
+      : parameters_(parameters), places_(std::move(places)) {}
+
+  RouteDecision decide(const FloorBelief& here, Duration elapsed);
+
+ private:
+  void pass_places(const FloorBelief& here);
+  [[nodiscard]] bool at_end() const { return next_ >= places_.size(); }
+  [[nodiscard]] Velocity wanted(const FloorBelief& here) const;
+
+  RouteParameters parameters_;
+  std::vector<Place> places_;
+  std::size_t next_ = 0;
+  Velocity goal_;
+};
+
+}  // namespace cgsr::behavior

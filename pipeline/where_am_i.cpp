@@ -1,0 +1,25 @@
+#include "pipeline/where_am_i.h"
+
+#include <utility>
+
+namespace cgsr {
+
+WhereAmI::WhereAmI(KnownSelf self)
+    : map_(std::move(self.map)),
+      X_CR_(self.X_RC.inverse()),
+      axle_height_m_(self.axle_height_m),
+      localizer_(map_, self.camera, self.localizer),
+      tracker_(localizer_, self.X_RC, self.tracking) {
+  tracker_.start(self.start);
+}
+
+const localization::TrackedPose& WhereAmI::look(const ImageView& grey, MonoTime stamp, WorkBudget& budget) {
+  if (const auto odometry = odometry_.at(stamp)) {
+    const geometry::Pose X_OR = pose_of(*odometry, axle_height_m_);
+    if (X_OR_) tracker_.moved(X_OR_->inverse() * X_OR);
+    X_OR_ = X_OR;
+  }
+  return tracker_.see(grey, budget);
+}
+
+}  // namespace cgsr

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+
+#include "pipeline/geometry/camera.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/localization/pose_tracker.h"
+#include "pipeline/odometry_track.h"
+#include "pipeline/world/map.h"
+
+namespace cgsr {
+
+/// What a robot with a map knows of itself before the first image.
+struct KnownSelf {
+  world::Map map;
+  geometry::Camera camera;  ///< with its lens, in the size of the images that come.
+  geometry::Pose X_RC = geometry::Pose::Identity();
+  double axle_height_m = 0.24;  ///< about which the base leans.
+  localization::LocalizerParameters localizer;
+  localization::PoseTrackerParameters tracking;
+  localization::Prior start;  ///< of the camera.
+};
+
+/// Chapter 4 as the vision loop holds it: odometry carries the pose from exposure to exposure, images correct it.
+///
+/// Threads: one. After construction nothing here allocates.
+class WhereAmI {
+ public:
+  explicit WhereAmI(KnownSelf self);
+  WhereAmI(const WhereAmI&) = delete;
+  WhereAmI& operator=(const WhereAmI&) = delete;
+
+  /// What the base reported since the last image.
+  void heard(const hal::Odometry& odometry) { odometry_.add(odometry); }
+
+  /// \param grey  of the camera's size or half of it.  \param stamp  start of its exposure.
+  const localization::TrackedPose& look(const ImageView& grey, MonoTime stamp, WorkBudget& budget);
+
+  /// \return X_WR of a pose X_WC.
+  [[nodiscard]] geometry::Pose robot_at(const geometry::Pose& X_WC) const { return X_WC * X_CR_; }
+
+ private:
+  world::Map map_;
+  geometry::Pose X_CR_;
+  double axle_height_m_;
+  localization::Localizer localizer_;
+  localization::PoseTracker tracker_;
+  OdometryTrack odometry_;
+  std::optional<geometry::Pose> X_OR_;  // at the last image
+};
+
+}  // namespace cgsr

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "pipeline/behavior/route.h"
+#include "pipeline/localization/localizer_parameters.h"
+#include "pipeline/localization/pose_tracker.h"
+#include "platform/parameters.h"
+
+namespace cgsr::config {
+
+/// Where the robot stands at boot, and how well that is known.
+struct StartPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_deg = 0.0;
+  double sigma_m = 0.15;
+  double sigma_deg = 4.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "in the world");
+    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "in the world");
+    visit.number("heading_deg", self.heading_deg, {-360.0, 360.0}, "deg", "from the world's x axis, to the left");
+    visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "standard deviation of each coordinate");
+    visit.number("sigma_deg", self.sigma_deg, {0.01, 90.0}, "deg", "standard deviation of the heading");
+  }
+};
+
+/// The section [localization] of a robot's file: chapter 4. Without a map the robot does not ask where it is.
+struct RobotLocalization {
+  std::string map;
+  std::string camera;
+  std::string mount;
+  double axle_height_m = 0.24;
+  StartPose start;
+  localization::LocalizerParameters localizer;
+  localization::PoseTrackerParameters tracker;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.text("map", self.map,
+               "geometry of the home (.obj, .gltf, .cao or what cgsr map import wrote); empty: no map");
+    visit.text("camera", self.camera, "intrinsics with the lens, as ROS's camera_calibration writes them");
+    visit.text("mount", self.mount, "where the camera is on the robot: [mount] of what cgsr sim export writes");
+    visit.number("axle_height_m", self.axle_height_m, {0.0, 2.0}, "m", "of the axle about which the base leans");
+    visit.section("start", self.start, "Where the robot stands when it boots");
+    visit.section("localizer", self.localizer, "Correcting a pose by an image (Alg. 4.1, 4.2)");
+    visit.section("tracker", self.tracker, "The pose from image to image");
+  }
+};
+
+enum class TaskKind : std::uint8_t {
+  kFollow,  ///< keep at a distance from an object.
+  kRoute,   ///< drive from place to place.
+};
+inline constexpr std::array kTaskKindNames{Named<TaskKind>{"follow", TaskKind::kFollow},
+                                           Named<TaskKind>{"route", TaskKind::kRoute}};
+
+struct Task {
+  TaskKind kind = TaskKind::kFollow;
+  behavior::RouteParameters route;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("kind", self.kind, kTaskKindNames, "follow: an object; route: from place to place, which needs a map");
+    visit.section("route", self.route, "The places, and how fast");
+  }
+};
+
+}  // namespace cgsr::config

@@ -1,0 +1,48 @@
+#include "src/robot/pose_tally.h"
+
+#include <cmath>
+
+namespace cgsr::robot {
+namespace {
+
+geometry::Pose true_camera(const hal::ImageTruth& truth) {
+  geometry::Pose X_WC = geometry::Pose::Identity();
+  const auto& q = truth.camera_wxyz;
+  X_WC.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
+  X_WC.translation() = Eigen::Vector3d(truth.camera_m[0], truth.camera_m[1], truth.camera_m[2]);
+  return X_WC;
+}
+
+}  // namespace
+
+void PoseTally::add(const hal::ImageTruth& truth, const Whereabouts& where, const hal::Odometry& odometry) {
+  if (!where.has_map) return;
+  if (figures_.images == 0 && !where.camera.correction.corrected) return;
+  follow_odometry(truth.robot, odometry);
+  const geometry::Vector6d error = geometry::step_between(true_camera(truth), where.camera.X_WC);
+  const double error_m = error.head<3>().norm();
+  const double error_rad = error.tail<3>().norm();
+  const auto n = static_cast<double>(++figures_.images);
+  figures_.corrected += where.camera.correction.corrected ? 1 : 0;
+  figures_.mean_m += (error_m - figures_.mean_m) / n;
+  figures_.mean_rad += (error_rad - figures_.mean_rad) / n;
+  if (error_m > figures_.worst_m) {
+    figures_.worst_m = error_m;
+    figures_.worst_s = to_seconds(truth.stamp.time_since_epoch());
+  }
+  figures_.worst_rad = std::max(figures_.worst_rad, error_rad);
+  const bool lost = where.camera.state == localization::TrackState::kLost;
+  figures_.lost += lost && state_ != localization::TrackState::kLost ? 1 : 0;
+  state_ = where.camera.state;
+}
+
+void PoseTally::follow_odometry(const hal::FloorPose& robot, const hal::Odometry& odometry) {
+  const geometry::Pose X_WR = geometry::pose_on_floor(robot.x_m, robot.y_m, robot.heading_rad);
+  const geometry::Pose X_OR = geometry::pose_on_floor(odometry.x_m, odometry.y_m, odometry.heading_rad);
+  if (!X_WO_) X_WO_ = X_WR * X_OR.inverse();
+  if (last_) figures_.way_m += std::hypot(robot.x_m - last_->x_m, robot.y_m - last_->y_m);
+  last_ = robot;
+  figures_.odometry_ends_off_m = (*X_WO_ * X_OR.translation() - X_WR.translation()).norm();
+}
+
+}  // namespace cgsr::robot

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "hal/simulation.h"
+#include "pipeline/vision_loop.h"
+
+namespace cgsr::robot {
+
+/// How well a simulated robot knew where it was, by what was really there. Counts begin with the first correction.
+struct PoseFigures {
+  std::uint64_t images = 0;
+  std::uint64_t corrected = 0;  ///< in which the image corrected the pose.
+  std::uint64_t lost = 0;       ///< times the robot said that it is lost.
+  double mean_m = 0.0;          ///< of the camera's position error.
+  double worst_m = 0.0;
+  double worst_s = 0.0;   ///< stamp of the worst position.
+  double mean_rad = 0.0;  ///< of the camera's direction error, the whole rotation.
+  double worst_rad = 0.0;
+  double way_m = 0.0;  ///< that the robot drove, by truth.
+
+  /// What odometry alone would have come to, from the pose of the first correction on: the robot's distance from where it is.
+  double odometry_ends_off_m = 0.0;
+};
+
+/// Adds up the figures, image by image.
+class PoseTally {
+ public:
+  /// \param odometry  the base's own, at about the image.
+  void add(const hal::ImageTruth& truth, const Whereabouts& where, const hal::Odometry& odometry);
+
+  [[nodiscard]] const PoseFigures& figures() const { return figures_; }
+
+ private:
+  void follow_odometry(const hal::FloorPose& robot, const hal::Odometry& odometry);
+
+  PoseFigures figures_;
+  std::optional<geometry::Pose> X_WO_;  // at the first correction, by truth
+  std::optional<hal::FloorPose> last_;
+  localization::TrackState state_ = localization::TrackState::kUnsure;
+};
+
+}  // namespace cgsr::robot
