@@ -10,6 +10,26 @@
 
 namespace cgsr::config {
 
+/// An ArUco marker on a wall whose place is known.
+struct StartMarker {
+  int id = -1;
+  double side_m = 0.15;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 1.0;
+  double facing_deg = 0.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("id", self.id, {-1, 49}, "", "its number among the 4x4 markers (OpenCV's DICT_4X4_50); -1: none");
+    visit.number("side_m", self.side_m, {0.01, 2.0}, "m", "side of its black square");
+    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "of its middle, in the world");
+    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "of its middle");
+    visit.number("z_m", self.z_m, {-100.0, 100.0}, "m", "of its middle, above the floor");
+    visit.number("facing_deg", self.facing_deg, {-360.0, 360.0}, "deg", "whither it looks, from the world's x axis");
+  }
+};
+
 /// Where the robot stands at boot, and how well that is known.
 struct StartPose {
   double x_m = 0.0;
@@ -17,6 +37,8 @@ struct StartPose {
   double heading_deg = 0.0;
   double sigma_m = 0.15;
   double sigma_deg = 4.0;
+  std::string file;
+  StartMarker marker;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -25,6 +47,10 @@ struct StartPose {
     visit.number("heading_deg", self.heading_deg, {-360.0, 360.0}, "deg", "from the world's x axis, to the left");
     visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "standard deviation of each coordinate");
     visit.number("sigma_deg", self.sigma_deg, {0.01, 90.0}, "deg", "standard deviation of the heading");
+    visit.text("file", self.file,
+               "where a run leaves its pose for the next one, which prefers it to the above; empty: nowhere");
+    visit.section("marker", self.marker,
+                  "A marker of known place, looked for in the first image when there is no such file");
   }
 };
 

@@ -117,6 +117,7 @@ void HousekeepingTask::take(const VisionReport& report) {
 
 void HousekeepingTask::watch_pose(const VisionReport& report) {
   const auto& decision = report.decision;
+  tally_.last_where = decision.where;
   if (decision.route.state != route_) {
     spdlog::info("image {}: route: {} -> {}", report.record.image_sequence, behavior::text(route_),
                  behavior::text(decision.route.state));

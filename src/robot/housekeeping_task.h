@@ -40,6 +40,7 @@ struct RunTally {
   double fastest_mps = 0.0;
   double fastest_radps = 0.0;
   MotionStatus last_motion;
+  Whereabouts last_where;
   std::string output_problem;  ///< the first file that could not be written; empty: none.
 };
 

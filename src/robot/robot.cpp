@@ -1,6 +1,5 @@
 #include "src/robot/robot.h"
 
-#include <numbers>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,6 +13,7 @@
 #include "pipeline/world/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
+#include "src/robot/boot_pose.h"
 #include "src/robot/simulation_plugin.h"
 
 namespace cgsr::robot {
@@ -58,15 +58,22 @@ Result<void> Robot::open_simulation() {
   return {};
 }
 
+/// The next image before the loops run.
+Result<ImageLease> Robot::first() {
+  const bool live = config_.run.pace == config::Pace::kLive;
+  auto image = camera_->next_image(live ? real_clock_.now() + seconds(5.0) : first_due_);
+  if (!image) return fail(fmt::format("no first image: {}", camera_->last_problem()));
+  first_due_ += mode_.frame_period;
+  return std::move(*image);
+}
+
 /// The object to follow: a file, or what a person shows in the camera's first image.
 Result<color::ColorModel> Robot::learn_or_load() {
   if (!config_.run.model.empty()) return color::load_model(config_.run.model);
   const auto& region = config_.run.learn;
   if (region.empty()) return fail("neither run.model nor run.learn says what shall be followed");
-  const bool live = config_.run.pace == config::Pace::kLive;
-  const auto image = camera_->next_image(live ? real_clock_.now() + seconds(5.0) : first_due_);
-  if (!image) return fail(fmt::format("no image to learn the object from: {}", camera_->last_problem()));
-  first_due_ += mode_.frame_period;
+  const auto image = first();
+  if (!image) return tl::unexpected(image.error());
   const Box box{static_cast<double>(region.x_px), static_cast<double>(region.y_px),
                 static_cast<double>(region.width_px), static_cast<double>(region.height_px)};
   const color::Sample sample{image->view(), box};
@@ -102,21 +109,21 @@ Result<void> Robot::make_whereabouts(VisionParts& parts) {
     return fail(fmt::format("{}: is of a camera with {}x{} px, the images have {}x{}: another camera's file?",
                             known.camera, camera->width_px, camera->height_px, mode_.width_px, mode_.height_px));
   }
-  const config::StartPose& start = known.start;
-  constexpr double kDegree = std::numbers::pi / 180.0;
+  const geometry::Camera scaled = camera->scaled_to(mode_.width_px, mode_.height_px);
+  const auto first_image = known.start.marker.id < 0 ? Result<ImageLease>{} : first();
+  if (!first_image) return tl::unexpected(first_image.error());
+  auto boot = boot_pose(known.start, scaled, *X_RC, first_image->view());
+  if (!boot) return tl::unexpected(boot.error());
   KnownSelf self;
   notes_.push_back(fmt::format("map {}: {} surfaces, {} edges", known.map, map->surfaces.size(), map->edges.size()));
   self.map = std::move(*map);
-  self.camera = camera->scaled_to(mode_.width_px, mode_.height_px);
+  self.camera = scaled;
   self.X_RC = *X_RC;
   self.axle_height_m = known.axle_height_m;
   self.localizer = known.localizer;
   self.tracking = known.tracker;
-  localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
-  sigmas.x_m = sigmas.y_m = start.sigma_m;
-  sigmas.heading_rad = start.sigma_deg * kDegree;
-  self.start = localization::prior_at(
-      geometry::pose_on_floor(start.x_m, start.y_m, start.heading_deg * kDegree) * *X_RC, sigmas);
+  self.start = boot->prior;
+  notes_.push_back("begins where " + boot->words + " says");
   parts.where = std::make_unique<WhereAmI>(std::move(self));
   return {};
 }
@@ -202,7 +209,16 @@ Result<void> Robot::run(StopRequest& stop) {
     done = camera_outcome();
   }
   housekeeping_->finish();
+  if (auto left = leave_pose_for_next_run(); !left && done) return left;
   return done;
+}
+
+/// Only a pose that the robot believed to the end is worth anything to the next run.
+Result<void> Robot::leave_pose_for_next_run() const {
+  const auto& where = housekeeping_->tally().last_where;
+  if (config_.localization.start.file.empty() || !where.robot.known) return {};
+  return leave_pose(config_.localization.start.file,
+                    geometry::pose_on_floor(where.robot.x_m, where.robot.y_m, where.robot.heading_rad));
 }
 
 Result<void> Robot::camera_outcome() const {

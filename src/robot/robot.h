@@ -51,6 +51,7 @@ class Robot {
 
   Result<void> open_camera();
   Result<void> open_simulation();
+  Result<ImageLease> first();
   Result<color::ColorModel> learn_or_load();
   Result<void> make_tracker(VisionParts& parts, std::optional<behavior::LearnedSize>& size);
   Result<void> make_whereabouts(VisionParts& parts);
@@ -61,6 +62,7 @@ class Robot {
   [[nodiscard]] std::unique_ptr<hal::Switches> make_switches();
 
   void run_lock_step(StopRequest& stop);
+  Result<void> leave_pose_for_next_run() const;
   Result<void> run_live(StopRequest& stop);
   /// \return what became of the camera. To be asked before the camera is told to stop, which counts as lost too.
   [[nodiscard]] Result<void> camera_outcome() const;

@@ -1,0 +1,76 @@
+#include "src/robot/pose_tally.h"
+
+#include <gtest/gtest.h>
+
+#include "pipeline/odometry_track.h"
+
+namespace cgsr::robot {
+namespace {
+
+Whereabouts corrected_at(const geometry::Pose& X_WC) {
+  Whereabouts where;
+  where.has_map = true;
+  where.camera.X_WC = X_WC;
+  where.camera.state = localization::TrackState::kTracking;
+  where.camera.correction.corrected = true;
+  return where;
+}
+
+TEST(PoseTally, MeasuresFromTheFirstCorrectionOn) {
+  PoseTally tally;
+  hal::ImageTruth truth;
+  truth.stamp = MonoTime{seconds(1.0)};
+  hal::Odometry odometry;
+  Whereabouts unsure = corrected_at(geometry::pose_on_floor(9.0, 0.0, 0.0));
+  unsure.camera.correction.corrected = false;
+  tally.add(truth, unsure, odometry);
+  EXPECT_EQ(tally.figures().images, 0U);
+
+  tally.add(truth, corrected_at(geometry::pose_on_floor(0.03, 0.04, 0.0)), odometry);
+  EXPECT_NEAR(tally.figures().worst_m, 0.05, 1e-12);
+  truth.robot = {1.0, 0.0, 0.0};
+  truth.camera_m = {1.0, 0.0, 0.0};
+  odometry.x_m = 0.9;
+  tally.add(truth, corrected_at(geometry::pose_on_floor(1.0, 0.0, 0.1)), odometry);
+  EXPECT_EQ(tally.figures().images, 2U);
+  EXPECT_NEAR(tally.figures().worst_m, 0.05, 1e-12);
+  EXPECT_NEAR(tally.figures().mean_m, 0.025, 1e-12);
+  EXPECT_NEAR(tally.figures().worst_rad, 0.1, 1e-9);
+  EXPECT_NEAR(tally.figures().way_m, 1.0, 1e-12);
+  EXPECT_NEAR(tally.figures().odometry_ends_off_m, 0.1, 1e-12);
+}
+
+hal::Odometry report(double time_s, double x_m, double heading_rad) {
+  hal::Odometry odometry;
+  odometry.stamp = MonoTime{seconds(time_s)};
+  odometry.x_m = x_m;
+  odometry.heading_rad = heading_rad;
+  odometry.velocity = {1.0, 0.5};
+  return odometry;
+}
+
+TEST(OdometryTrack, SaysWhereTheRobotWasAtTheExposure) {
+  OdometryTrack track;
+  EXPECT_FALSE(track.at(MonoTime{}));
+  for (int i = 0; i < 300; ++i) track.add(report(0.01 * i, 0.01 * i, 0.005 * i));
+  const auto between = track.at(MonoTime{seconds(2.555)});
+  ASSERT_TRUE(between);
+  EXPECT_NEAR(between->x_m, 2.555, 1e-6);
+  EXPECT_NEAR(between->heading_rad, 1.2775, 1e-6);
+  const auto after = track.at(MonoTime{seconds(3.03)});
+  ASSERT_TRUE(after);
+  EXPECT_NEAR(after->heading_rad, 1.495 + 0.5 * 0.04, 1e-6);
+  EXPECT_FALSE(track.at(MonoTime{seconds(3.2)})) << "too late to be led on";
+  EXPECT_FALSE(track.at(MonoTime{seconds(1.0)})) << "before what is kept";
+}
+
+TEST(OdometryTrack, ALeaningRobotTurnsAboutItsAxle) {
+  hal::Odometry odometry;
+  odometry.pitch_rad = 0.1;
+  const geometry::Pose X_OR = pose_of(odometry, 0.24);
+  EXPECT_LT((X_OR * Eigen::Vector3d(0, 0, 0.24) - Eigen::Vector3d(0, 0, 0.24)).norm(), 1e-12);
+  EXPECT_GT((X_OR * Eigen::Vector3d(0, 0, 1.24)).x(), 0.09) << "positive leans forward";
+}
+
+}  // namespace
+}  // namespace cgsr::robot
