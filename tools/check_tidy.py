@@ -3,7 +3,8 @@
 
 usage: check_tidy.py [--quick] [PATTERN]      only files whose path contains PATTERN
 
-  --quick   without the search along execution paths (clang-analyzer-*) and the dearest of the rest: half the time
+  --quick   what runs on a robot only (not tools/), without the search along execution paths (clang-analyzer-*) and the dearest of the
+            rest: a third of the time
 
 A file is clean as long as it, every project header it includes (directly or not), its compile command and .clang-tidy are
 the same bytes as when it last passed; the memory is build/tidy.json (build/tidy-quick.json).
@@ -56,14 +57,20 @@ def main():
     commands = json.loads((ROOT / "build" / "release" / "compile_commands.json").read_text())
     memory = json.loads(memory_file.read_text()) if memory_file.exists() else {}
     todo = []
+    seen = set()
     for entry in commands:
         path = pathlib.Path(entry["file"])
         if ROOT not in path.parents or pattern not in str(path) or (ROOT / "build") in path.parents:
             continue
         if ROOT / "tests" in path.parents and not pattern:  # the compiler's warnings have to do for tests; by name they are checked too
             continue
+        if quick and ROOT / "tools" in path.parents and not pattern:
+            continue
         entry["mark"] = fingerprint(entry)
         entry["key"] = path.relative_to(ROOT).as_posix()
+        if quick and entry["key"] in seen:  # a file of two programs
+            continue
+        seen.add(entry["key"])
         if memory.get(entry["key"]) != entry["mark"]:
             todo.append(entry)
     print(f"{len(todo)} of {len(commands)} files changed since they were last clean", flush=True)
