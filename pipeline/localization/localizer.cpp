@@ -44,7 +44,8 @@ struct Localizer::State {
         search(parameters, alternation, perception.camera()) {}
 
   Correction from_one_start(const Belief& belief, double widest_px, WorkBudget& budget);
-  void judge(const Estimate& estimate, float lead, Correction& answer) const;
+  /// \param explained_least  of the gate: a search among many poses asks for more than a pose that is followed.
+  void judge(const Estimate& estimate, float lead, double explained_least, Correction& answer) const;
 
   const world::Map* map;
   LocalizerParameters parameters;
@@ -73,7 +74,8 @@ bool Localizer::searching() const {
   return state_->search.running();
 }
 
-void Localizer::State::judge(const Estimate& estimate, float lead, Correction& answer) const {
+void Localizer::State::judge(const Estimate& estimate, float lead, double explained_least,
+                             Correction& answer) const {
   const geometry::Matrix6d covariance = covariance_of(estimate, parameters);
   answer.matches = estimate.matches;
   answer.expected = estimate.expected;
@@ -83,7 +85,9 @@ void Localizer::State::judge(const Estimate& estimate, float lead, Correction& a
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
   answer.evidence = evidence_of(estimate, lead);
   if (parameters.gate) {
-    answer.reason = gate(estimate, lead, covariance, parameters);
+    LocalizerParameters bounds = parameters;
+    bounds.explained_least = explained_least;
+    answer.reason = gate(estimate, lead, covariance, bounds);
   } else if (estimate.solved) {
     answer.reason = Reason::kNone;
   } else {
@@ -107,7 +111,7 @@ Correction Localizer::State::from_one_start(const Belief& belief, double widest_
     answer.reason = Reason::kNoBudget;
     return answer;
   }
-  judge(estimate, 1.0F, answer);
+  judge(estimate, 1.0F, parameters.explained_tracking, answer);
   return answer;
 }
 
@@ -144,7 +148,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   }
   if (s.search.running()) {
     if (s.search.go_on(belief, s.perception.edges(), budget)) {
-      s.judge(s.search.best(), s.search.lead(), answer);
+      s.judge(s.search.best(), s.search.lead(), s.parameters.explained_least, answer);
     } else {
       answer.reason = Reason::kSearching;
     }

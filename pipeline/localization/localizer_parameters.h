@@ -38,6 +38,7 @@ struct LocalizerParameters {
   int walks = 4;
   int matches_least = 4;
   double explained_least = 0.45;
+  double explained_tracking = 0.2;
   double lead_least = 0.02;
   double evidence_least = 0.6;
   double prior_chi2_most = 25.0;
@@ -74,6 +75,8 @@ struct LocalizerParameters {
     visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
     visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate");
     visit.number("explained_least", self.explained_least, {0.0, 1.0}, "", "gate: share of the expected length found");
+    visit.number("explained_tracking", self.explained_tracking, {0.0, 1.0}, "",
+                 "gate: the same where a narrow prior is followed: what hides much of the map moves no pose");
     visit.number("lead_least", self.lead_least, {0.0, 1.0}, "", "gate: ahead of the second-best pose");
     visit.number("evidence_least", self.evidence_least, {-10.0, 2.0}, "", "gate: explained, lead and prior together");
     visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
