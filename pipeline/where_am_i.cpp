@@ -18,6 +18,7 @@ const localization::TrackedPose& WhereAmI::look(const ImageView& grey, MonoTime 
     const geometry::Pose X_OR = pose_of(*odometry, axle_height_m_);
     if (X_OR_) tracker_.moved(X_OR_->inverse() * X_OR);
     X_OR_ = X_OR;
+    tracker_.pitched(odometry->pitch_rad, axle_height_m_);
   }
   return tracker_.see(grey, budget);
 }

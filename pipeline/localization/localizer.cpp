@@ -44,8 +44,9 @@ struct Localizer::State {
         search(parameters, alternation, perception.camera()) {}
 
   Correction from_one_start(const Belief& belief, double widest_px, WorkBudget& budget);
-  /// \param explained_least  of the gate: a search among many poses asks for more than a pose that is followed.
-  void judge(const Estimate& estimate, float lead, double explained_least, Correction& answer) const;
+  /// \param bounds  of the gate: a search among many poses asks for more than a pose that is followed.
+  void judge(const Estimate& estimate, float lead, const LocalizerParameters& bounds, Correction& answer) const;
+  [[nodiscard]] LocalizerParameters bounds_of_tracking() const;
 
   const world::Map* map;
   LocalizerParameters parameters;
@@ -74,7 +75,14 @@ bool Localizer::searching() const {
   return state_->search.running();
 }
 
-void Localizer::State::judge(const Estimate& estimate, float lead, double explained_least,
+LocalizerParameters Localizer::State::bounds_of_tracking() const {
+  LocalizerParameters bounds = parameters;
+  bounds.explained_least = parameters.explained_tracking;
+  bounds.evidence_least = parameters.explained_tracking;  // no other pose was looked at: there is nothing to lead
+  return bounds;
+}
+
+void Localizer::State::judge(const Estimate& estimate, float lead, const LocalizerParameters& bounds,
                              Correction& answer) const {
   const geometry::Matrix6d covariance = covariance_of(estimate, parameters);
   answer.matches = estimate.matches;
@@ -85,8 +93,6 @@ void Localizer::State::judge(const Estimate& estimate, float lead, double explai
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
   answer.evidence = evidence_of(estimate, lead);
   if (parameters.gate) {
-    LocalizerParameters bounds = parameters;
-    bounds.explained_least = explained_least;
     answer.reason = gate(estimate, lead, covariance, bounds);
   } else if (estimate.solved) {
     answer.reason = Reason::kNone;
@@ -111,7 +117,7 @@ Correction Localizer::State::from_one_start(const Belief& belief, double widest_
     answer.reason = Reason::kNoBudget;
     return answer;
   }
-  judge(estimate, 1.0F, parameters.explained_tracking, answer);
+  judge(estimate, 1.0F, bounds_of_tracking(), answer);
   return answer;
 }
 
@@ -148,7 +154,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   }
   if (s.search.running()) {
     if (s.search.go_on(belief, s.perception.edges(), budget)) {
-      s.judge(s.search.best(), s.search.lead(), s.parameters.explained_least, answer);
+      s.judge(s.search.best(), s.search.lead(), s.parameters, answer);
     } else {
       answer.reason = Reason::kSearching;
     }

@@ -84,11 +84,13 @@ void PoseTracker::moved(const Pose& X_R0R1) {
 
 // A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along.
 void PoseTracker::flatten() {
-  const Pose X_WR = now_.X_WC * X_RC_.inverse();
-  const Pose level =
-      geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
+  const Eigen::Vector3d axle(0.0, 0.0, axle_height_m_);
   Pose tilt = Pose::Identity();
   tilt.linear() = Eigen::AngleAxisd(pitch_rad_, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  tilt.translation() = axle - tilt.linear() * axle;
+  const Pose X_WR = now_.X_WC * X_RC_.inverse() * tilt.inverse();
+  const Pose level =
+      geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
   now_.X_WC = level * tilt * X_RC_;
   for (const int i : {2, 3, 4}) {
     now_.covariance.row(i).setZero();

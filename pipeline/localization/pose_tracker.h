@@ -69,8 +69,12 @@ class PoseTracker {
   /// The robot moved by X_R0R1 since the last call, as its odometry says, aligned to the coming image's exposure.
   void moved(const geometry::Pose& X_R0R1);
 
-  /// The robot's pitch at the coming image's exposure as its base measures it, positive nose down; 0 until told. Only where the floor counts.
-  void pitched(double pitch_rad) { pitch_rad_ = pitch_rad; }
+  /// The robot's pitch at the coming image's exposure as its base measures it, positive nose down, about an axle that high; 0 until told. Only
+  /// where the floor counts. What moved() was told contains it.
+  void pitched(double pitch_rad, double axle_height_m) {
+    pitch_rad_ = pitch_rad;
+    axle_height_m_ = axle_height_m;
+  }
 
   /// Looks at an image. Never damages the pose: what the gate refuses leaves the prediction.
   const TrackedPose& see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask = nullptr);
@@ -86,6 +90,7 @@ class PoseTracker {
   PoseTrackerParameters parameters_;
   TrackedPose now_;
   double pitch_rad_ = 0.0;
+  double axle_height_m_ = 0.0;
   double driven_m_ = 0.0;  ///< since the last correction: slip adds up along it.
   double turned_rad_ = 0.0;
 };

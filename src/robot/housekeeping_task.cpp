@@ -35,7 +35,7 @@ std::string row_of(const VisionReport& report, const MotionStatus& motion, bool 
   } else {
     row += "0,,,,,,,,,";
   }
-  row += fmt::format("{},{:.4f},{:.4f},{:.4f},{:.4f},{},\"{}\",", state_of(report.decision, route),
+  row += fmt::format("\"{}\",{:.4f},{:.4f},{:.4f},{:.4f},{},\"{}\",", state_of(report.decision, route),
                      report.decision.goal.forward_mps, report.decision.goal.left_radps, motion.commanded.forward_mps,
                      motion.commanded.left_radps, motion.armed ? 1 : 0, text(motion.cause));
   return row + pose_columns(report.decision.where);
