@@ -53,8 +53,8 @@ struct Pinhole {
 /// What a vision loop is made of. Each may be missing; what would do its work then has nothing to say.
 struct VisionParts {
   std::optional<color::Tracker> tracker = std::nullopt;  ///< chapter 3.
-  std::unique_ptr<WhereAmI> where = nullptr;        ///< chapter 4.
-  std::optional<behavior::Route> route = std::nullopt;   ///< the task is to drive it; without one, to follow the object.
+  std::unique_ptr<WhereAmI> where = nullptr;             ///< chapter 4.
+  std::optional<behavior::Route> route = std::nullopt;  ///< the task is to drive it; without one, to follow the object.
 };
 
 /// One image through Figure 5.1, as far as it is built: every line of on_image is a stage with a row in the schedule.

@@ -10,7 +10,8 @@ Result<Robot> load_robot(const std::filesystem::path& file) {
   robot->run.model = path_beside(file, robot->run.model).string();
   robot->camera.replay.path = path_beside(file, robot->camera.replay.path).string();
   auto& known = robot->localization;
-  for (std::string* path : {&known.map, &known.camera, &known.mount, &known.start.file}) *path = path_beside(file, *path).string();
+  for (std::string* path : {&known.map, &known.camera, &known.mount, &known.start.file})
+    *path = path_beside(file, *path).string();
   robot->sim.scenario = path_beside(file, robot->sim.scenario).string();
   robot->sim.plug_in = path_beside(file, robot->sim.plug_in).string();
   return robot;

@@ -21,6 +21,7 @@ std::span<const Experiment> experiments() {
       Experiment{"section-4.3.3", "The same with cloth walls in between, and without them (4.3.3)", true,
                  section_4_3_3},
       Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
+      Experiment{"home-round", "Three minutes through the simulated home on wheels that slip", true, home_round},
       Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };

@@ -45,6 +45,7 @@ Result<Report> figure_3_3(const Setting& setting);
 Result<Report> table_4_1(const Setting& setting);
 Result<Report> section_4_3_3(const Setting& setting);
 Result<Report> false_corrections(const Setting& setting);
+Result<Report> home_round(const Setting& setting);
 Result<Report> closed_loop(const Setting& setting);
 Result<Report> table_5_1(const Setting& setting);
 
