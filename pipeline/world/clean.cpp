@@ -175,7 +175,8 @@ Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m) {
   std::vector<std::array<std::uint32_t, 2>> lines;
   lines.reserve(soup.lines.size());
   for (const auto& line : soup.lines) lines.push_back({became[line[0]], became[line[1]]});
-  trace_outlines(lines, weld_m, map);
+  if (!trace_outlines(lines, weld_m, map))
+    return fail("its faces lie through each other nearly everywhere: this is no map of a place");
   look_beside(lies_on_m, map);
   Orderer(map).run();
   return map;

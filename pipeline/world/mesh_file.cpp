@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <exception>
@@ -30,6 +31,44 @@ constexpr int kDeepest = 256;
 float encoded(float linear) {
   const float x = std::clamp(linear, 0.0F, 1.0F);
   return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F;
+}
+
+// By the name's ending, however it is written.
+bool is_a(const std::filesystem::path& path, std::string_view ending) {
+  const std::string own = path.extension().string();
+  return std::equal(own.begin(), own.end(), ending.begin(), ending.end(),
+                    [](unsigned char a, char b) { return std::tolower(a) == b; });
+}
+
+// glTF's JSON is parsed by recursion: brackets within brackets without end would take the stack.
+bool too_deep(std::string_view text) {
+  int depth = 0;
+  bool quoted = false;
+  bool escaped = false;
+  for (const char c : text) {
+    if (quoted) {
+      quoted = escaped || c != '"';
+      escaped = !escaped && c == '\\';
+      continue;
+    }
+    if (c == '"') quoted = true;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kDeepest) return true;
+  }
+  return false;
+}
+
+// The JSON of either kind of file: all of a .gltf, the first chunk of a .glb (after 20 bytes of heads, as long as the 4 from the 12th on say).
+Result<bool> gltf_too_deep(const std::filesystem::path& path) {
+  const auto text = read_text(path);
+  if (!text) return tl::unexpected(text.error());
+  if (!is_a(path, ".glb")) return too_deep(*text);
+  if (text->size() < 20) return false;
+  std::uint32_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    length |= static_cast<std::uint32_t>(static_cast<unsigned char>((*text)[12 + i])) << (8U * i);
+  return too_deep(std::string_view(*text).substr(20, length));
 }
 
 // The first word of a line and what follows it.
@@ -160,7 +199,12 @@ Result<Soup> read_mesh_file(const std::filesystem::path& path, const LoadOptions
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (error) return wrong(error.message());
   if (bytes > kLargestBytes) return wrong(fmt::format("{} bytes are more than {} MB", bytes, kLargestBytes >> 20U));
-  const bool gltf = path.extension() == ".gltf" || path.extension() == ".glb";
+  const bool gltf = is_a(path, ".gltf") || is_a(path, ".glb");
+  if (gltf) {
+    const auto deep = gltf_too_deep(path);
+    if (!deep) return tl::unexpected(deep.error());
+    if (*deep) return wrong(fmt::format("brackets are nested more than {} deep", kDeepest));
+  }
   try {
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(path.string(), 0);

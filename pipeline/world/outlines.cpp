@@ -15,6 +15,7 @@ namespace {
 
 // Two surfaces that bend by less than this are flat, or folded onto each other.
 const double kCosFlat = std::cos(0.6 * 3.14159265358979 / 180.0);
+constexpr std::size_t kMostNear = 500;  // pieces of outlines, on average, whose box a corner may lie in.
 constexpr std::size_t kMostAtVertex =
     64;  // edges at one corner that are looked at when straight lines are put together again.
 
@@ -36,12 +37,13 @@ class Tracer {
  public:
   Tracer(double weld_m, Map& map) : weld_m_(weld_m), map_(map) {}
 
-  void run(const std::vector<std::array<std::uint32_t, 2>>& lines) {
+  bool run(const std::vector<std::array<std::uint32_t, 2>>& lines) {
     collect();
-    cut();
+    if (!cut()) return false;
     pair();
     straighten();
     draw(lines);
+    return true;
   }
 
  private:
@@ -68,7 +70,7 @@ class Tracer {
   }
 
   // Where the end of one piece touches the inside of another, that one is cut.
-  void cut() {
+  bool cut() {
     std::vector<std::uint32_t> ends;
     std::vector<Bounds> boxes;
     ends.reserve(2 * pieces_.size());
@@ -94,14 +96,16 @@ class Tracer {
       }
     };
     std::vector<Notch> notches;
-    // A map in which everything touches everything is left as it is.
-    const std::size_t most = 8 * pieces_.size() + 1000;
+    // Where everything lies among everything, this would take for ever.
+    const std::size_t most = kMostNear * ends.size() + 1'000'000;
+    std::size_t looked_at = 0;
     for (const std::uint32_t v : ends) {
-      if (notches.size() > most) break;
+      if (looked_at > most) return false;
       Bounds box;
       box.low = map_.vertices[v].array() - static_cast<float>(weld_m_);
       box.high = map_.vertices[v].array() + static_cast<float>(weld_m_);
       tree.touching(box, [&](std::uint32_t i) {
+        ++looked_at;
         const Piece& piece = pieces_[i];
         if (piece.from == v || piece.to == v) return;
         const Eigen::Vector3d whole = point(piece.to) - point(piece.from);
@@ -113,7 +117,7 @@ class Tracer {
         notches.push_back({i, along, v});
       });
     }
-    if (notches.empty()) return;
+    if (notches.empty()) return true;
     std::sort(notches.begin(), notches.end());
     std::vector<Piece> result;
     result.reserve(pieces_.size() + notches.size());
@@ -129,6 +133,7 @@ class Tracer {
     }
     std::sort(result.begin(), result.end());
     pieces_.swap(result);
+    return true;
   }
 
   // From the line into the surface, in its plane.
@@ -344,8 +349,8 @@ class Tracer {
 
 }  // namespace
 
-void trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map) {
-  Tracer(weld_m, map).run(lines);
+bool trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map) {
+  return Tracer(weld_m, map).run(lines);
 }
 
 }  // namespace cgsr::world

@@ -10,6 +10,7 @@ namespace cgsr::world {
 
 /// Fills map.edges from the outlines of map.surfaces: vertices, surfaces and kind; not yet sides and contrast. See clean().
 /// \param lines  that the file draws itself; those that an edge covers anyway are left out.
-void trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map);
+/// \return false when the outlines lie so much among each other that it would take too long.
+bool trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map);
 
 }  // namespace cgsr::world

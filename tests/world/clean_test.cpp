@@ -391,6 +391,12 @@ TEST(Clean, RefusesWhatIsNoWorld) {
   Maker huge;
   huge.face({{0, 0, 0}, {1.1e6F, 0, 0}, {0, 1, 0}});
   EXPECT_THAT(refused(huge), testing::HasSubstr("1000 km"));
+  Maker tangle;
+  std::mt19937 random(5);
+  const auto unit = [&] { return static_cast<float>(random() % 10000U) / 10000.0F; };
+  for (int i = 0; i < 8000; ++i)
+    tangle.face({{unit(), unit(), unit()}, {unit(), unit(), unit()}, {unit(), unit(), unit()}});
+  EXPECT_THAT(refused(tangle), testing::HasSubstr("through each other"));
 }
 
 }  // namespace

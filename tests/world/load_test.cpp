@@ -213,6 +213,10 @@ TEST(LoadMapFault, WhatIsNoMapIsRefusedWithItsName) {
   EXPECT_THAT(refusal("a.gltf", "{"), HasSubstr("a.gltf: "));
   EXPECT_THAT(refusal("a.glb", "glTF"), HasSubstr("a.glb: "));
   EXPECT_THAT(refusal("a.cgsrmap", "CGSRMAP"), HasSubstr("too short"));
+  EXPECT_THAT(refusal("a.gltf", std::string(200'000, '[')), HasSubstr("nested more than"));
+  EXPECT_THAT(refusal("a.glb",
+                      "glTF" + std::string(8, '\0') + std::string("\x40\x0D\x03\0JSON", 8) + std::string(200'000, '[')),
+              HasSubstr("nested more than"));
   const auto missing = load_map("/nowhere/at/all.obj");
   ASSERT_FALSE(missing);
   EXPECT_THAT(missing.error().message, HasSubstr("/nowhere/at/all.obj: No such file"));
