@@ -59,8 +59,8 @@ void DirectionField::build(const SegmentTable& perceived) {
     const int lower = static_cast<int>(std::floor(turn * kBins - 0.5F)) + kBins;
     for (float t = -edge.half_length; t <= edge.half_length; t += kFill_px) {
       const Eigen::Vector2f p = edge.middle + t * edge.direction;
-      const int x = static_cast<int>(p.x() + 0.5F) / kCell_px;
-      const int y = static_cast<int>(p.y() + 0.5F) / kCell_px;
+      const int x = static_cast<int>(std::lround(p.x())) / kCell_px;
+      const int y = static_cast<int>(std::lround(p.y())) / kCell_px;
       if (p.x() < 0.0F || p.y() < 0.0F || x >= width_ || y >= height_) continue;
       const std::size_t cell = (static_cast<std::size_t>(y) + 1) * stride_ + static_cast<std::size_t>(x) + 1;
       plane(lower % kBins)[cell] = 0;
@@ -87,8 +87,8 @@ float DirectionField::score(std::span<const ProjectedPiece> expected) const {
     for (int i = 0; i < samples; ++i) {
       const float along = (static_cast<float>(i) + 0.5F) * step - piece.half_length;
       const Eigen::Vector2f p = piece.middle + along * piece.direction;
-      const int x = std::clamp(static_cast<int>(p.x() + 0.5F) / kCell_px, 0, width_ - 1);
-      const int y = std::clamp(static_cast<int>(p.y() + 0.5F) / kCell_px, 0, height_ - 1);
+      const int x = std::clamp(static_cast<int>(std::lround(p.x())) / kCell_px, 0, width_ - 1);
+      const int y = std::clamp(static_cast<int>(std::lround(p.y())) / kCell_px, 0, height_ - 1);
       const std::size_t cell = (static_cast<std::size_t>(y) + 1) * stride_ + static_cast<std::size_t>(x) + 1;
       sum += weight * value_[std::min(first[cell], second[cell])];
       whole += weight;
