@@ -238,10 +238,14 @@ LampEstimates locate_lamps(const Board& board, const LampParameters& parameters,
     used[0][static_cast<std::size_t>(best_left)] = used[1][static_cast<std::size_t>(best_right)] = true;
     all.lamp[static_cast<std::size_t>(all.count++)] = best_estimate;
   }
-  // Two shadows that would be one lamp's and do not meet are nobody's.
+  // Two shadows that would be one lamp's and do not meet are nobody's, but a ray is not given up for a single line.
   if (left == 1 && right == 1 && all.count == 0) {
-    all.status = why;
-    return all;
+    const int left_lines = shadow_at(0, 0)->lines;
+    if (left_lines == shadow_at(1, 0)->lines) {
+      all.status = why;
+      return all;
+    }
+    used[left_lines == 2 ? 1 : 0][0] = true;
   }
   for (int probe = 0; probe < kMostProbes; ++probe) {
     for (int k = 0; k < observation.probe[static_cast<std::size_t>(probe)].count; ++k) {

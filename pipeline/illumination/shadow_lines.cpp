@@ -30,7 +30,9 @@ constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge ex
 constexpr int kStripSteps = 24;           // beside a cone's outline
 constexpr double kStripStep_m = 0.0025;
 constexpr double kStripSigma_m = 0.002;  // of the tip's shadow by where the strip ends
-constexpr double kEndOfStrip = 1.1;      // the tip is most of what is seen
+constexpr double kMostToTip_m = 0.02;     // along a single line, for its end to be looked at
+constexpr double kTipFound_m = 0.0025;   // then the tip's shadow must be known to this
+constexpr double kEndWithTip = 1.1;      // the tip is most of what is seen
 constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
 constexpr double kRadiusSigma_m = 0.0003;
 
@@ -255,7 +257,7 @@ ShadowFinder::Candidate ShadowFinder::beside_cone(const LumaView& image, const B
   }
   if (dark_steps < 2 || gap < 2) return candidate;  // none, or one without an end
   candidate.ray = 0;
-  candidate.strip = true;
+  candidate.known_m = kStripSigma_m;
   candidate.score = kLeastScore;
   candidate.contrast = 1.2 * darkest;
   candidate.level = level;
@@ -264,7 +266,7 @@ ShadowFinder::Candidate ShadowFinder::beside_cone(const LumaView& image, const B
 }
 
 int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, const Vector2d& tip_shadow,
-                                 double slack_m, bool strip) {
+                                 double slack_m, bool with_tip) {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, tip_shadow);
   if (!outline.valid) return 0;
   int count = 0;
@@ -274,7 +276,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
     const Vector2d line = tip_shadow - outline.touch[side];
     const double length = line.norm();
     // The part of the line that lies on the board, so that a long shadow's samples do not fall beside it.
-    double reach = strip ? kEndOfStrip : kEndOfLine;
+    double reach = with_tip ? kEndWithTip : kEndOfLine;
     for (int axis = 0; axis < 2; ++axis) {
       const double edge = (axis == 0 ? board_.depth_m : board_.width_m) / 2 - kBoardMargin_m;
       const double end = outline.touch[side][axis] + line[axis];
@@ -310,7 +312,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         sample.value = image.at(pixel.x(), pixel.y());
         sample.place = place;
       }
-      if (count - before < (strip ? 3 : kLeastAcross)) {
+      if (count - before < (with_tip ? 3 : kLeastAcross)) {
         count = before;
         continue;
       }
@@ -321,6 +323,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
 }
 
 bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candidate& candidate, ProbeShadow& shadow) {
+  const bool with_tip = candidate.known_m > 0.0;
   Unknowns x;
   x << candidate.tip_shadow, probe_.foot_B, probe_.radius_m, candidate.contrast, candidate.level, 0.0, 0.0;
   Normal H;
@@ -334,8 +337,8 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
     const Vector2d chosen_at = x.head<2>();
     count = choose_samples(image, view, chosen_at,
                            choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001,
-                           candidate.strip);
-    if (count < (candidate.strip ? kLeastSamples / 2 : kLeastSamples)) return false;
+                           with_tip);
+    if (count < (with_tip ? kLeastSamples / 2 : kLeastSamples)) return false;
     const int steps = choice == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {
       const Vector2d tip = x.head<2>();
@@ -432,7 +435,7 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
       H(kRadius, kRadius) += 1.0 / (kRadiusSigma_m * kRadiusSigma_m);
       g[kRadius] += (probe_.radius_m - x[kRadius]) / (kRadiusSigma_m * kRadiusSigma_m);
       // Very weak, for what the samples cannot tell: with one line the place along it.
-      const double known_m = candidate.strip ? kStripSigma_m : 0.5;
+      const double known_m = with_tip ? candidate.known_m : 0.5;
       const double weak = 1.0 / (known_m * known_m);
       g.head<2>() += weak * (candidate.tip_shadow - tip);
       H(kTipX, kTipX) += weak;
@@ -461,7 +464,7 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   shadow.contrast = x[kDark];
   shadow.rms = std::sqrt(variance);
   const Normal covariance = H.inverse();
-  if (!candidate.strip && shadow.contrast < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
+  if (!with_tip && shadow.contrast < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
   if (shadow.contrast < parameters_.least_contrast || shadow.contrast < parameters_.least_share * x[kLevel])
     return false;
   shadow.p_BS = x.head<2>();
@@ -470,11 +473,11 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   const auto d = view.derivative(p_BS);
   if (!d.in_front) return false;
   shadow.by_pose = -d.by_point.leftCols<2>().inverse() * view.by_pose(d, p_BS);
-  if (candidate.strip) {
+  if (with_tip) {
     shadow.lines = 2;
     shadow.support = 1.0;
     return shadow.rms < std::max(1.8, 0.1 * shadow.contrast) &&
-           (shadow.p_BS - candidate.tip_shadow).norm() < 3.0 * kStripSigma_m;
+           (shadow.p_BS - candidate.tip_shadow).norm() < 3.0 * candidate.known_m;
   }
   // Do the places along the lines show it, each by itself?
   std::array<int, 2> shown{};
@@ -503,6 +506,20 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   if (shadow.lines == 0 || shadow.rms > std::max(4.0, 0.35 * shadow.contrast)) return false;
   shadow.support = static_cast<double>(all_shown) / std::max(1, all_asked);
   return true;
+}
+
+// One line is seen. Where it ends the other one may still show.
+void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, ProbeShadow& shadow) {
+  const double along_m = std::sqrt(shadow.covariance.trace());
+  if (along_m > kMostToTip_m || !seen(shadow.p_BS)) return;
+  Candidate again;
+  again.tip_shadow = shadow.p_BS;
+  again.contrast = shadow.contrast;
+  again.level = level_;
+  again.known_m = std::max(2.0 * kStripSigma_m, along_m);
+  ProbeShadow with_tip;
+  if (!fit(image, view, again, with_tip)) return;
+  if (with_tip.covariance.trace() < kTipFound_m * kTipFound_m) shadow = with_tip;
 }
 
 void ShadowFinder::take_away(const ProbeShadow& shadow) {
@@ -558,6 +575,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
       known = known || (other.p_BS - shadow.p_BS).norm() < probe_.radius_m;
     }
     if (known) continue;
+    if (shadow.lines == 1) look_for_tip(image, view, shadow);
     found.shadow[static_cast<std::size_t>(found.count++)] = shadow;
     take_away(shadow);
   }

@@ -88,7 +88,7 @@ class ShadowFinder {
     double score = 0.0;
     double contrast = 0.0;
     double level = 0.0;
-    bool strip = false;  // beside the cone that hides the rest: the tip is known to kStripSigma_m
+    double known_m = 0.0;  // how well the tip is known beforehand, from where a strip ends; 0: not, and the tip itself is not looked at
   };
   struct Sample {
     Eigen::Vector2f from_foot;
@@ -108,8 +108,9 @@ class ShadowFinder {
   [[nodiscard]] Candidate beside_cone(const LumaView& image, const BoardView& view, std::size_t side) const;
   [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate, ProbeShadow& shadow);
   int choose_samples(const LumaView& image, const BoardView& view, const Eigen::Vector2d& tip_shadow, double slack_m,
-                     bool strip);
+                     bool with_tip);
   [[nodiscard]] bool seen(const Eigen::Vector2d& p_B) const;
+  void look_for_tip(const LumaView& image, const BoardView& view, ProbeShadow& shadow);
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
   [[nodiscard]] double penumbra_sigma(double along) const;
