@@ -30,7 +30,7 @@ constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge ex
 constexpr int kStripSteps = 24;           // beside a cone's outline
 constexpr double kStripStep_m = 0.0025;
 constexpr double kStripSigma_m = 0.002;  // of the tip's shadow by where the strip ends
-constexpr double kMostToTip_m = 0.02;     // along a single line, for its end to be looked at
+constexpr double kMostToTip_m = 0.02;    // along a single line, for its end to be looked at
 constexpr double kTipFound_m = 0.0025;   // then the tip's shadow must be known to this
 constexpr double kEndWithTip = 1.1;      // the tip is most of what is seen
 constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
@@ -336,8 +336,7 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
     const bool last = choice + 1 == kChoices || (choice > 0 && moved_m < 0.0008);
     const Vector2d chosen_at = x.head<2>();
     count = choose_samples(image, view, chosen_at,
-                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001,
-                           with_tip);
+                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001, with_tip);
     if (count < (with_tip ? kLeastSamples / 2 : kLeastSamples)) return false;
     const int steps = choice == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {

@@ -88,7 +88,8 @@ class ShadowFinder {
     double score = 0.0;
     double contrast = 0.0;
     double level = 0.0;
-    double known_m = 0.0;  // how well the tip is known beforehand, from where a strip ends; 0: not, and the tip itself is not looked at
+    double known_m =
+        0.0;  // how well the tip is known beforehand, from where a strip ends; 0: not, and the tip itself is not looked at
   };
   struct Sample {
     Eigen::Vector2f from_foot;
