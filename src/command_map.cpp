@@ -205,24 +205,23 @@ void add_map_command(CLI::App& app, int& exit_code) {
   info->add_flag("--json", options->json, "as JSON");
   info->callback([options, &exit_code] { exit_code = run_info(*options); });
 
-  auto* import =
+  auto* importing =
       command->add_subcommand("import", "write the cleaned-up map with its edges as a compact, checked copy");
-  add_load_options(*import, *options);
-  import->add_option("--output", options->output, "the copy: NAME.cgsrmap")->required();
-  import->callback([options, &exit_code] { exit_code = run_import(*options);
-});
+  add_load_options(*importing, *options);
+  importing->add_option("--output", options->output, "the copy: NAME.cgsrmap")->required();
+  importing->callback([options, &exit_code] { exit_code = run_import(*options); });
 
-const auto add_view = [&](CLI::App& view) {
-  add_load_options(view, *options);
-  view.add_option("--camera", options->camera, "intrinsics (YAML, as ROS writes them)")->required();
-  view.add_option("--pose", options->pose, "where the camera is in the map: CSV of one row")->required();
-  view.add_option("--output", options->output, "the picture")->required();
-  view.callback([options, &exit_code] { exit_code = run_picture(*options); });
-};
-add_view(*command->add_subcommand("render", "the map and its visible edges, seen from a pose"));
-auto* overlay = command->add_subcommand("overlay", "the map's visible edges over an image");
-overlay->add_option("--image", options->image, "of the camera's size")->required();
-add_view(*overlay);
-}  // namespace cgsr::app
+  const auto add_view = [&](CLI::App& view) {
+    add_load_options(view, *options);
+    view.add_option("--camera", options->camera, "intrinsics (YAML, as ROS writes them)")->required();
+    view.add_option("--pose", options->pose, "where the camera is in the map: CSV of one row")->required();
+    view.add_option("--output", options->output, "the picture")->required();
+    view.callback([options, &exit_code] { exit_code = run_picture(*options); });
+  };
+  add_view(*command->add_subcommand("render", "the map and its visible edges, seen from a pose"));
+  auto* overlay = command->add_subcommand("overlay", "the map's visible edges over an image");
+  overlay->add_option("--image", options->image, "of the camera's size")->required();
+  add_view(*overlay);
+}
 
 }  // namespace cgsr::app
