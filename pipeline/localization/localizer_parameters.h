@@ -38,7 +38,7 @@ struct LocalizerParameters {
   int walks = 4;
   int matches_least = 4;
   double explained_least = 0.45;
-  double explained_tracking = 0.2;
+  double explained_tracking = 0.3;
   double lead_least = 0.02;
   double evidence_least = 0.6;
   double prior_chi2_most = 25.0;
