@@ -22,7 +22,7 @@ std::optional<Eigen::Vector2d> Camera::pixel_of(const Eigen::Vector3d& p_C) cons
 }
 
 Eigen::Vector2d Camera::ideal_of(const Eigen::Vector2d& pixel) const {
-  const Eigen::Vector2d bent((pixel.x() - cx_px) / fx_px, (pixel.y() - cy_px) / fy_px);
+  Eigen::Vector2d bent((pixel.x() - cx_px) / fx_px, (pixel.y() - cy_px) / fy_px);
   if (!has_distortion()) return bent;
   Eigen::Vector2d ideal = bent;
   for (int i = 0; i < 12; ++i) {

@@ -84,8 +84,8 @@ void ShadowVolumes::take_camera(const geometry::Camera& camera) {
       const auto v = static_cast<float>(view.fy * ideal.y() + view.cy);
       const int left = std::clamp(static_cast<int>(u), 0, view.width - 2);
       const int top = std::clamp(static_cast<int>(v), 0, view.height - 2);
-      const int column = std::clamp(static_cast<int>(u + 0.5F), 0, view.width - 1);
-      const int row = std::clamp(static_cast<int>(v + 0.5F), 0, view.height - 1);
+      const int column = std::clamp(static_cast<int>(std::lround(u)), 0, view.width - 1);
+      const int row = std::clamp(static_cast<int>(std::lround(v)), 0, view.height - 1);
       rays_[i] = {u,
                   v,
                   static_cast<float>(ideal.x()),

@@ -154,7 +154,7 @@ std::string carrier_of(const Scene& scene, const std::map<std::string, Extent>& 
   const Extent& own = extents.at(thing);
   const Vector3f centre = own.box.center();
   for (const Part& part : scene.parts) {
-    const std::string other = thing_of(part);
+    std::string other = thing_of(part);
     if (part.figure >= 0 || !part.in_map || !part.casts_shadow || other == thing) continue;
     const Extent& extent = extents.at(other);
     if (extent.box.squaredExteriorDistance(centre) > kTouching_m * kTouching_m) continue;
