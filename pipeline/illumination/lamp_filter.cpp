@@ -21,7 +21,6 @@ constexpr double kGate = 16.0;  // of one shadow, 2 degrees of freedom: 3 in 10,
 constexpr double kRegistrationNoise =
     0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
 constexpr double kStartSigma_m = 6.0;  // along the floor, before the first shadow
-constexpr double kFadedSigma_m = 0.5;
 
 Matrix3d cross(const Vector3d& v) {
   Matrix3d m;
