@@ -62,7 +62,7 @@ struct LampEstimate {
   bool triangulated = false;
   Eigen::Vector3d p_RL_triangulated = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance_triangulated = Eigen::Matrix3d::Zero();
-  /// The rays tell the height better than it was known; p_RL is then the triangulated one.
+  /// The rays tell the height better than it was known. p_RL stays the fit that leans on the known height.
   bool height_measured = false;
 };
 
