@@ -168,7 +168,7 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
 
 Result<void> LocalizeRun::write(const ImageView& image, const localization::Correction& answer) {
   if (csv_) {
-    const auto written =
+    auto written =
         csv_->add_line(fmt::format("{},{},{},{},{},{:.3f}", frame_, answer.corrected ? 1 : 0, name_of(answer.reason),
                                    pose_as_csv(answer.X_WC), answer.matches, answer.rms_px));
     if (!written) return written;
