@@ -26,6 +26,7 @@ void add_learn_command(CLI::App& app, int& exit_code);
 void add_track_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
+void add_light_command(CLI::App& app, int& exit_code);
 void add_localize_command(CLI::App& app, int& exit_code);
 void add_shade_command(CLI::App& app, int& exit_code);
 void add_sim_command(CLI::App& app, int& exit_code);

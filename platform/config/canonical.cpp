@@ -11,8 +11,12 @@ void Canonical::number(std::string_view name, int value, Range<int>, std::string
 }
 
 void Canonical::number(std::string_view name, double value, Range<double>, std::string_view, std::string_view) {
-  // The shortest text that reads back to the same bits; a negative zero means what a zero means.
-  lines_[prefix_ + std::string(name)] = fmt::to_string(value == 0.0 ? 0.0 : value);
+  lines_[prefix_ + std::string(name)] = spelled(value);
+}
+
+// The shortest text that reads back to the same bits; a negative zero means what a zero means.
+std::string Canonical::spelled(double value) {
+  return fmt::to_string(value == 0.0 ? 0.0 : value);
 }
 
 void Canonical::flag(std::string_view name, bool value, std::string_view) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <string_view>
@@ -18,6 +20,14 @@ class Canonical {
   void number(std::string_view name, double value, Range<double>, std::string_view, std::string_view);
   void flag(std::string_view name, bool value, std::string_view);
   void text(std::string_view name, const std::string& value, std::string_view);
+
+  template <std::size_t kCount>
+  void numbers(std::string_view name, const std::array<double, kCount>& values, Range<double>, std::string_view,
+               std::string_view) {
+    std::string list;
+    for (const double value : values) list += (list.empty() ? "" : ", ") + spelled(value);
+    lines_[prefix_ + std::string(name)] = "[" + list + "]";
+  }
 
   template <class Enum, class Names>
   void choice(std::string_view name, Enum value, const Names& names, std::string_view meaning) {
@@ -39,6 +49,8 @@ class Canonical {
   [[nodiscard]] std::string toml() const;
 
  private:
+  static std::string spelled(double value);
+
   std::string prefix_;
   std::map<std::string, std::string> lines_;
 };
