@@ -8,6 +8,7 @@
 
 #include "platform/config/reader.h"
 #include "src/input/camera_file.h"
+#include "src/input/robot_calibration.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -17,7 +18,8 @@ using illumination::LampStatus;
 using illumination::ObservationStatus;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr const char* kColumns = "frame,status,lamp,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,probes,lines,angle_deg,world_x_m,world_y_m,world_z_m";
+constexpr const char* kColumns =
+    "frame,status,lamp,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,probes,lines,angle_deg,world_x_m,world_y_m,world_z_m";
 
 std::string image_row(int frame, std::string_view status) {
   return fmt::format("{},{},,,,,,,,,,,,,\n", frame, status);
@@ -54,7 +56,13 @@ Result<LightRun> LightRun::open(const LightOptions& options) {
   if (!config) return tl::unexpected(config.error());
   const auto camera = read_camera(options.camera);
   if (!camera) return tl::unexpected(camera.error());
-  const auto board = illumination::make_board(config->probes.board, config->mount.X_RC(), *camera);
+  geometry::Pose X_RC = config->mount.X_RC();
+  if (!options.mount.empty()) {
+    const auto mount = read_mount(options.mount);
+    if (!mount) return tl::unexpected(mount.error());
+    X_RC = *mount;
+  }
+  const auto board = illumination::make_board(config->probes.board, X_RC, *camera);
   if (!board) return fail(fmt::format("{}: {}", options.config, board.error().message));
   if (const auto checked = illumination::check_lamp(*board, config->lamp); !checked) {
     return fail(fmt::format("{}: {}", options.config, checked.error().message));
@@ -68,8 +76,9 @@ Result<LightRun> LightRun::open(const LightOptions& options) {
   auto input = ImageInput::open({options.input});
   if (!input) return tl::unexpected(input.error());
   if (input->mode().width_px != camera->width_px || input->mode().height_px != camera->height_px) {
-    return fail(fmt::format("{}: images of {}x{}, but {} is of a camera of {}x{}", options.input, input->mode().width_px,
-                            input->mode().height_px, options.camera, camera->width_px, camera->height_px));
+    return fail(fmt::format("{}: images of {}x{}, but {} is of a camera of {}x{}", options.input,
+                            input->mode().width_px, input->mode().height_px, options.camera, camera->width_px,
+                            camera->height_px));
   }
   return LightRun(options, std::move(*config), *board, std::move(*input), std::move(poses));
 }
@@ -132,8 +141,9 @@ std::vector<std::string> LightRun::summary() const {
     const auto& lamp = filter_.lamp(i);
     if (!lamp.steady) continue;
     const Eigen::Vector3d sigma = lamp.covariance.diagonal().cwiseSqrt();
-    lines.push_back(fmt::format("lamp {} at ({:.3f}, {:.3f}, {:.3f}) m in the world, sigma ({:.3f}, {:.3f}, {:.3f}), seen in {} images",
-                                i, lamp.p_WL.x(), lamp.p_WL.y(), lamp.p_WL.z(), sigma.x(), sigma.y(), sigma.z(), lamp.seen));
+    lines.push_back(fmt::format(
+        "lamp {} at ({:.3f}, {:.3f}, {:.3f}) m in the world, sigma ({:.3f}, {:.3f}, {:.3f}), seen in {} images", i,
+        lamp.p_WL.x(), lamp.p_WL.y(), lamp.p_WL.z(), sigma.x(), sigma.y(), sigma.z(), lamp.seen));
   }
   lines.insert(lines.end(), problems_.begin(), problems_.end());
   return lines;

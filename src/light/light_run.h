@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -14,6 +14,7 @@ namespace cgsr::app {
 struct LightOptions {
   std::string config;
   std::string camera;
+  std::string mount;  ///< a robot.toml of `cgsr sim export` or `cgsr calibrate mount`; empty: what `config` says.
   std::string input;
   std::string pose;
   std::string csv;
