@@ -30,6 +30,7 @@ int run_light(const LightOptions& options) {
   for (const std::string& line : run->summary()) fmt::print("{}\n", line);
   if (!options.csv.empty()) fmt::print("rows     {}\n", options.csv);
   fmt::print("configuration {}\n", config::hash(run->config()));
+  if (ended && run->answered() == 0) return report(Error{fmt::format("no lamp in any image: {}", run->last_cause())});
   return ended ? kSuccess : kInterrupted;
 }
 
@@ -48,7 +49,9 @@ void add_light_command(CLI::App& app, int& exit_code) {
   command->add_option("--input", options->input, "video, image folder or image")->required();
   command->add_option("--pose", options->pose,
                       "CSV with the robot's pose for each image: lamps are kept in the world's frame as well");
-  command->add_option("--csv", options->csv, "write a row for each lamp of each image");
+  command->add_option(
+      "--csv", options->csv,
+      "write a row for each lamp of each image: robot frame, or the world's where --pose says where the robot was");
   command->callback([options, &exit_code] { exit_code = run_light(*options); });
 }
 

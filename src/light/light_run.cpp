@@ -1,5 +1,6 @@
 #include "src/light/light_run.h"
 
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -18,11 +19,10 @@ using illumination::LampStatus;
 using illumination::ObservationStatus;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr const char* kColumns =
-    "frame,status,lamp,x_m,y_m,z_m,sigma_x_m,sigma_y_m,sigma_z_m,probes,lines,angle_deg,world_x_m,world_y_m,world_z_m";
+constexpr const char* kColumns = "frame,found,reason,x,y,z,probes,sigma_m";
 
-std::string image_row(int frame, std::string_view status) {
-  return fmt::format("{},{},,,,,,,,,,,,,\n", frame, status);
+std::string unanswered_row(int frame, std::string_view reason) {
+  return fmt::format("{},0,{},,,,,\n", frame, reason);
 }
 
 }  // namespace
@@ -89,40 +89,38 @@ Result<bool> LightRun::step() {
   const int frame = images_++;
   if (!next.image) {
     problems_.push_back(fmt::format("image {}: {}", frame, next.problem));
-    rows_ += image_row(frame, "unreadable");
+    rows_ += unanswered_row(frame, "unreadable");
     return true;
   }
   const auto observation = observer_.observe(next.image.view());
   ++causes_[static_cast<std::size_t>(observation.status)];
   const auto lamps = illumination::locate_lamps(observer_.board(), config_.lamp, observation);
-  const PoseRow* pose = nullptr;
-  for (const PoseRow& row : poses_) {
-    if (row.frame ? *row.frame == frame : &row - poses_.data() == frame) pose = &row;
-  }
-  if (pose != nullptr) filter_.update(observation, pose->X, geometry::Matrix6d::Zero());
-  if (lamps.count == 0) {
-    const bool seen = observation.status == ObservationStatus::kSeen;
-    rows_ += image_row(frame, seen ? illumination::name_of(lamps.status) : illumination::name_of(observation.status));
-    return true;
-  }
+  const geometry::Pose* X_WR = pose_of(frame);
+  if (X_WR != nullptr) filter_.update(observation, *X_WR, geometry::Matrix6d::Zero());
   bool found = false;
   for (int i = 0; i < lamps.count; ++i) {
     const auto& lamp = lamps.lamp[static_cast<std::size_t>(i)];
-    found = found || lamp.status == LampStatus::kFound;
-    const Eigen::Vector3d sigma = lamp.covariance.diagonal().cwiseSqrt();
-    const Eigen::Vector3d& p = lamp.p_RL;
-    rows_ += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{:.2f},", frame,
-                         illumination::name_of(lamp.status), i, p.x(), p.y(), p.z(), sigma.x(), sigma.y(), sigma.z(),
-                         lamp.probes, lamp.lines, lamp.angle_rad * kDegPerRad);
-    if (pose != nullptr) {
-      const Eigen::Vector3d p_WL = pose->X * p;
-      rows_ += fmt::format("{:.4f},{:.4f},{:.4f}\n", p_WL.x(), p_WL.y(), p_WL.z());
-    } else {
-      rows_ += ",,\n";
-    }
+    if (lamp.status != LampStatus::kFound) continue;
+    found = true;
+    const Eigen::Vector3d p = X_WR != nullptr ? Eigen::Vector3d(*X_WR * lamp.p_RL) : lamp.p_RL;
+    rows_ += fmt::format("{},1,,{:.4f},{:.4f},{:.4f},{},{:.4f}\n", frame, p.x(), p.y(), p.z(),
+                         std::popcount(static_cast<unsigned>(lamp.probes)), std::sqrt(lamp.covariance.trace()));
+  }
+  if (!found) {
+    const bool seen = observation.status == ObservationStatus::kSeen;
+    last_cause_ = seen ? illumination::name_of(lamps.status) : illumination::name_of(observation.status);
+    rows_ += unanswered_row(frame, last_cause_);
   }
   answered_ += found ? 1 : 0;
   return true;
+}
+
+const geometry::Pose* LightRun::pose_of(int frame) const {
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const PoseRow& row = poses_[i];
+    if (row.frame ? *row.frame == frame : static_cast<int>(i) == frame) return &row.X;
+  }
+  return nullptr;
 }
 
 Result<void> LightRun::finish() {

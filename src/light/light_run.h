@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/illumination/lamp_filter.h"
@@ -61,11 +62,16 @@ class LightRun {
 
   [[nodiscard]] int images() const { return images_; }
   [[nodiscard]] int answered() const { return answered_; }
+  /// \return why the last image without a lamp had none.
+  [[nodiscard]] std::string_view last_cause() const { return last_cause_; }
   [[nodiscard]] const LightConfig& config() const { return config_; }
   /// For the terminal: where lamps are, and what was in the way.
   [[nodiscard]] std::vector<std::string> summary() const;
 
  private:
+  /// \return the robot's pose of an image; null: nobody said.
+  [[nodiscard]] const geometry::Pose* pose_of(int frame) const;
+
   LightRun(const LightOptions& options, LightConfig config, const illumination::Board& board, ImageInput input,
            std::vector<PoseRow> poses);
 
@@ -77,6 +83,7 @@ class LightRun {
   illumination::LampFilter filter_;
   std::vector<int> causes_;  // images by ObservationStatus
   std::string rows_;
+  std::string_view last_cause_;
   std::vector<std::string> problems_;
   int images_ = 0;
   int answered_ = 0;
