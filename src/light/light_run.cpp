@@ -41,10 +41,10 @@ geometry::Pose MountParameters::X_RC() const {
   return X;
 }
 
-LightRun::LightRun(const LightOptions& options, LightConfig config, const illumination::Board& board, ImageInput input,
-                   std::vector<PoseRow> poses)
+LightRun::LightRun(const LightOptions& options, const LightConfig& config, const illumination::Board& board,
+                   ImageInput input, std::vector<PoseRow> poses)
     : options_(options),
-      config_(std::move(config)),
+      config_(config),
       input_(std::move(input)),
       poses_(std::move(poses)),
       observer_(board, config_.probes, config_.lamp.height_m - board.X_RB.translation().z()),
@@ -80,7 +80,7 @@ Result<LightRun> LightRun::open(const LightOptions& options) {
                             input->mode().width_px, input->mode().height_px, options.camera, camera->width_px,
                             camera->height_px));
   }
-  return LightRun(options, std::move(*config), *board, std::move(*input), std::move(poses));
+  return LightRun(options, *config, *board, std::move(*input), std::move(poses));
 }
 
 Result<bool> LightRun::step() {

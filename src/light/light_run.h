@@ -72,7 +72,7 @@ class LightRun {
   /// \return the robot's pose of an image; null: nobody said.
   [[nodiscard]] const geometry::Pose* pose_of(int frame) const;
 
-  LightRun(const LightOptions& options, LightConfig config, const illumination::Board& board, ImageInput input,
+  LightRun(const LightOptions& options, const LightConfig& config, const illumination::Board& board, ImageInput input,
            std::vector<PoseRow> poses);
 
   LightOptions options_;
