@@ -52,6 +52,8 @@ struct Localization {
 inline Result<Localization> load_localization(const std::filesystem::path& file) {
   Localization free;
   free.tracker.floor = false;
+  free.tracker.drift_m = 0.005;  // a hand moves without odometry
+  free.tracker.drift_deg = 0.5;
   if (file.empty()) return free;
   return read_file<Localization>(file, Missing::kTakesDefault);
 }

@@ -24,6 +24,16 @@ Result<config::Localization> configuration_of(const LocalizeOptions& options) {
   return config;
 }
 
+/// A pose to follow from was measured or found: it is believed better than one that odometry carried.
+localization::PriorSigmas start_sigmas(const config::PriorParameters& prior) {
+  constexpr double kPlace_m = 0.02;
+  constexpr double kTurn_deg = 1.0;
+  config::PriorParameters start = prior;
+  for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, kPlace_m);
+  for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, kTurn_deg);
+  return start.sigmas();
+}
+
 }  // namespace
 
 Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
@@ -85,8 +95,9 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     odometry_ = std::move(*odometry);
     odometry_file_ = options.odometry;
   }
+  X_RC_ = X_RC;
   state_->tracker.emplace(*state_->localizer, X_RC, state_->config.tracker);
-  state_->tracker->start(localization::prior_at(*start, state_->config.prior.sigmas()));
+  state_->tracker->start(localization::prior_at(*start, start_sigmas(state_->config.prior)));
   return {};
 }
 
@@ -124,17 +135,17 @@ Result<const PoseRow*> LocalizeRun::row_for(const std::vector<PoseRow>& rows, co
 localization::Correction LocalizeRun::follow(const ImageView& image) {
   localization::PoseTracker& tracker = *state_->tracker;
   UnlimitedBudget budget;
-  // At the beginning there is time: the first image is looked at until it says where the camera is.
-  const bool first = images_ == 0;
-  for (int look = 1; first && look < kMostLooks; ++look) {
+  // No robot waits: an image is looked at until it says where the camera is. What the first one costs is not counted: its prior is wide.
+  const bool counted = images_ > 0;
+  if (counted) count_stage_begin();
+  for (int look = 0; look < kMostLooks; ++look) {
     tracker.see(image, budget);
     if (!state_->localizer->searching()) break;
   }
-  if (first) return tracker.now().correction;
-  count_stage_begin();
-  tracker.see(image, budget);
-  count_stage_end("localize");
-  count_image_end();
+  if (counted) {
+    count_stage_end("localize");
+    count_image_end();
+  }
   return tracker.now().correction;
 }
 
@@ -147,8 +158,15 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
       if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
       X_OR_before_ = (*row)->X;
     }
-    if (images_ > 0) state_->tracker->moved(X_R0R1);
-    return follow(image);
+    if (images_ == 0) return follow(image);
+    const geometry::Pose X_WC_before = state_->tracker->now().X_WC;
+    state_->tracker->moved(odometry_.empty() ? X_RR_last_ : X_R0R1);
+    const localization::Correction answer = follow(image);
+    // Without odometry: as it moved last, so it moves on.
+    if (odometry_.empty())
+      X_RR_last_ = answer.corrected ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
+                                    : geometry::Pose::Identity();
+    return answer;
   }
   const auto row = row_for(priors_, priors_file_);
   if (!row) return tl::unexpected(row.error());

@@ -85,6 +85,9 @@ class LocalizeRun {
   std::vector<PoseRow> odometry_;
   std::string odometry_file_;
   std::optional<geometry::Pose> X_OR_before_;
+  geometry::Pose X_RC_ = geometry::Pose::Identity();
+  geometry::Pose X_RR_last_ =
+      geometry::Pose::Identity();  ///< how the robot moved over the last image, where nothing says it.
   std::optional<TextFile> csv_;
   std::optional<VideoWriter> video_;
   std::vector<std::string> notes_;

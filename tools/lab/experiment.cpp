@@ -18,11 +18,13 @@ std::span<const Experiment> experiments() {
       Experiment{"figure-3.3", "A shirt followed from a corridor into daylight (Figure 3.3)", true, figure_3_3},
       Experiment{"closed-loop", "The simulated home's robot follows a cart through changing light", true, closed_loop},
       Experiment{"table-4.1", "A camera's pose corrected on the field (Table 4.1)", true, table_4_1},
+      Experiment{"table-4.2", "What a correction costs by the edges in the map (Table 4.2)", true, table_4_2},
       Experiment{"section-4.3.3", "The same with cloth walls in between, and without them (4.3.3)", true,
                  section_4_3_3},
       Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
       Experiment{"home-round", "Three minutes through the simulated home on wheels that slip", true, home_round},
       Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
+      Experiment{"real-localization", "Chapter 4 on a cube, a desk and ViSP's castle", true, real_localization},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };
   return kExperiments;
