@@ -169,7 +169,7 @@ Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Repo
   const auto result = run_for_json(
       {program.string(), "localize", "--map", sequence.map.string(), "--camera", (folder / "camera.yaml").string(),
        "--input", sequence.images.string(), "--pose", (folder / "pose.csv").string(), "--config",
-       CGSR_LOCALIZATION "/free.toml", "--csv", (folder / "answer.csv").string(), "--video",
+       std::string(CGSR_LOCALIZATION) + "/free.toml", "--csv", (folder / "answer.csv").string(), "--video",
        (fs::temp_directory_path() / fmt::format("cgsr-{}.mkv", sequence.name)).string(), "--json", json.string()},
       json);
   if (!result) return tl::unexpected(result.error());

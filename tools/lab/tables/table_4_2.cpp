@@ -84,7 +84,7 @@ void scale_world(sim::WorldSpec& spec, const Case& wanted) {
     sim::ShapeSpec box;
     box.name = fmt::format("more {}", i);
     box.material = i % 2 == 0 ? "planar yellow" : "planar blue";
-    box.position_m = {-3.0 - 0.5 * (i / columns), 5.0 + 0.3 * (i % columns), 0.01};
+    box.position_m = {-3.0 - 0.5 * std::floor(static_cast<double>(i) / columns), 5.0 + 0.3 * (i % columns), 0.01};
     box.size_m = {0.2, 0.2, 0.3};
     spec.shape.push_back(box);
   }
