@@ -1,0 +1,138 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "pipeline/color/color_model.h"
+#include "pipeline/color/search_types.h"
+#include "pipeline/color/shade_mask.h"
+#include "platform/box.h"
+#include "platform/error.h"
+#include "platform/image_view.h"
+#include "platform/parameters.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::color {
+
+/// The shape of a ball: a circle of a size that is known to some degree.
+struct BallParameters {
+  double diameter_m = 0.20;
+  double nearest_m = 1.0;
+  double farthest_m = 7.0;
+  double found_agreement = 0.60;
+  double kept_agreement = 0.45;
+  double least_inside = 0.60;
+  double most_around = 0.45;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("diameter_m", self.diameter_m, {0.01, 2.0}, "m", "of the ball");
+    visit.number("nearest_m", self.nearest_m, {0.1, 100.0}, "m", "from the camera; gives the largest circle");
+    visit.number("farthest_m", self.farthest_m, {0.1, 100.0}, "m", "from the camera; gives the smallest circle");
+    visit.number("found_agreement", self.found_agreement, {0.0, 1.0}, "",
+                 "share of a circle on which the image's edge lies and runs along it, at first sight");
+    visit.number("kept_agreement", self.kept_agreement, {0.0, 1.0}, "", "the same of a ball that is followed");
+    visit.number("least_inside", self.least_inside, {0.0, 1.0}, "", "share of the circle in the ball's colours");
+    visit.number("most_around", self.most_around, {0.0, 1.0}, "", "share of the ring around it in these colours");
+  }
+};
+
+/// The section [integrated] of a robot's file.
+struct IntegratedParameters {
+  std::array<double, 3> dark_factors{0.25, 0.40, 0.55};
+  double max_divergence = 0.30;
+  double max_dark_divergence = 0.30;
+  int candidates = 6;
+  int lost_after_images = 3;
+  SearchParameters search{Divergence::kJensenShannon, BinWeights::kPlain, 0.1, 3, 1.5, 8.0, 6};
+  BallParameters ball;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.numbers("dark_factors", self.dark_factors, {0.05, 1.0}, "",
+                  "what the lights of the model are multiplied by where there may be shade");
+    visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
+                 "a window farther than this from every bright histogram is not looked at");
+    visit.number("max_dark_divergence", self.max_dark_divergence, {0.0, 0.7}, "nat", "the same of the dark ones");
+    visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
+                 "windows of each of the two searches of which the shape is looked at");
+    visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
+                 "images without the ball after which it is found as at first sight");
+    visit.section("search", self.search, "The two searches over the image");
+    visit.section("ball", self.ball, "Its shape");
+  }
+};
+
+/// A circle in the camera image.
+struct Circle {
+  double x_px = 0.0;
+  double y_px = 0.0;
+  double radius_px = 0.0;
+};
+
+/// Diameters that the ball's image can have.
+struct SizeRange {
+  double least_px = 0.0;
+  double most_px = 0.0;
+};
+
+/// What a ball of this size shows at these distances. \param focal_px  mean of fx and fy.
+SizeRange projected_size(const BallParameters& ball, double focal_px);
+
+/// Where the ball is in one image, and what the answer cost.
+struct BallSighting {
+  bool found = false;
+  Box box;  ///< camera pixels, around the circle, cut at the image's border; read only when found, as down to `dark`.
+  Circle circle;             ///< whole.
+  double agreement = 0.0;    ///< of the image's edges with the circle, 0..1.
+  double divergence = 0.0;   ///< [nat] from the histogram that fits best.
+  Light light;               ///< that histogram's; with the darkness factor in it when dark.
+  double shade_share = 0.0;  ///< of the circle inside the mask; 0 without one.
+  bool dark = false;         ///< the histogram that fits best is a dark one.
+
+  bool mask_used =
+      false;  ///< false: there was no mask, or none that can be used, and dark histograms were searched everywhere.
+  bool exact = true;        ///< false: the budget ended a search.
+  int bright_windows = 0;   ///< there were to compare,
+  int bright_examined = 0;  ///< and had their histogram counted.
+  int dark_windows = 0;
+  int dark_examined = 0;
+};
+
+/// Chapter 3's search with chapter 5's knowledge of shade (5.3), for a ball of one colour: the bright histograms of a model are searched
+/// everywhere, dark ones only where there may be shade, and what they find has to be round and of a size that can be.
+///
+/// The model is one of learn(), of a box around the ball (`widen` off, `min_distinctiveness` 0: a single colour is what the shape makes up
+/// for). Its histograms are made anew, of the circle in the box and without its corners, out of the samples that the model keeps.
+///
+/// Threads: one. Memory is reserved by create; track never allocates.
+class IntegratedTracker {
+ public:
+  /// \param max_width_px, max_height_px  the largest camera image that will come.
+  /// \param focal_px  mean of fx and fy; 0: not known, the ball has 1/5 to 5 times its learned size.
+  /// \return an error in words: a defective model, one without a sample, parameters that cannot be.
+  static Result<IntegratedTracker> create(const ColorModel& model, const IntegratedParameters& parameters,
+                                          int max_width_px, int max_height_px, double focal_px = 0.0);
+  IntegratedTracker(IntegratedTracker&&) noexcept;
+  IntegratedTracker& operator=(IntegratedTracker&&) noexcept;
+  ~IntegratedTracker();
+
+  /// Looks for the ball in the next image.
+  /// \param image  YUYV, as the camera sent it. \param mask  over this image; empty: none is known, and dark histograms are searched
+  ///        everywhere (BallSighting::mask_used). \param budget  asked once per unit of the searches and per closer look.
+  /// \param size  what else is known of its size in this image; nothing: what create() was told.
+  BallSighting track(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
+                     std::optional<SizeRange> size = std::nullopt);
+
+  /// Forgets where the ball was.
+  void forget();
+
+ private:
+  struct State;
+  explicit IntegratedTracker(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cgsr::color
