@@ -19,7 +19,7 @@ namespace cgsr::hal {
 
 /// Grows whenever anything in this header or in the interfaces that it names changes: a plug-in of another version is
 /// refused.
-inline constexpr int kSimulationVersion = 3;
+inline constexpr int kSimulationVersion = 4;
 
 /// The section [sim] of a robot's file.
 struct SimulationParameters {
@@ -68,6 +68,9 @@ struct ImageTruth {
       0.0;               ///< how fast the object alone, without the robot's motion, comes nearer; negative: goes away.
   bool in_view = false;  ///< at least one pixel of it.
   Box box;               ///< around the pixels of it that are seen.
+  bool lamp_burns = false;         ///< some lamp does:
+  std::array<double, 3> lamp_m{};  ///< the one that would light the camera most, world frame.
+  double object_lit_share = 0.0;   ///< of the pixels of the object that are seen, those that see that lamp's centre.
 };
 
 /// A triangle of the world as it looks from above, for a plan.

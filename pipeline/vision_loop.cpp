@@ -11,10 +11,12 @@ constexpr Duration kPoseKeeps = seconds(0.5);  // a pose that no stage renewed f
 
 Decision VisionLoop::on_image(const ImageLease& image) {
   const auto& view = runner_.run(decode_, image);
-  const auto& where = runner_.run(localize_, image, view);  // chapter 4: glCorrect
-  const auto& matches = runner_.run(search_, view);         // chapter 3, Alg. 3.2
+  const auto& where = runner_.run(localize_, image, view);  // where am I: chapter 4, glCorrect
+  const auto& lamp = runner_.run(probes_, image, where);    // where is the lamp: Alg. 5.1, Eq. 5.1 and 5.2
+  const auto& shade = runner_.run(shade_, where, lamp);     // what lies in its shadow: 5.2
+  const auto& matches = runner_.run(search_, view);         // where is the object: chapter 3, Alg. 3.2
   const auto& object = runner_.run(track_, image, view, matches);
-  return runner_.run(decide_, image, object, where);
+  return runner_.run(decide_, image, object, where, lamp, shade);
 }
 
 VisionLoop::VisionLoop(runtime::StageRunner& runner, VisionParts parts, behavior::Follow follow, const Pinhole& camera,
@@ -28,11 +30,16 @@ VisionLoop::VisionLoop(runtime::StageRunner& runner, VisionParts parts, behavior
       decode_("decode", [this](const ImageLease& image) { return decode(image); }),
       localize_("localize", [this](WorkBudget& budget, const ImageLease& image,
                                    const View& view) { return localize(budget, image, view); }),
+      probes_("probes", [this](const ImageLease& image,
+                               const runtime::Aged<Whereabouts>& where) { return probes(image, where); }),
+      shade_("shade",
+             [this](const runtime::Aged<Whereabouts>& where, const LampSight& lamp) { return shade(where, lamp); }),
       search_("search", [this](WorkBudget& budget, const View& view) { return search(budget, view); }),
       track_("track", [this](WorkBudget& budget, const ImageLease& image, const View& view,
                              const color::SearchResult& matches) { return track(budget, image, view, matches); }),
       decide_("decide", [this](const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
-                               const runtime::Aged<Whereabouts>& where) { return decide(image, object, where); }) {}
+                               const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
+                               const ShadeSight& shade) { return decide(image, object, where, lamp, shade); }) {}
 
 void VisionLoop::heard(const hal::Odometry& odometry) {
   if (parts_.where) parts_.where->heard(odometry);
@@ -60,6 +67,21 @@ Whereabouts VisionLoop::localize(WorkBudget& budget, const ImageLease& image, co
   return where;
 }
 
+LampSight VisionLoop::probes(const ImageLease& image, const runtime::Aged<Whereabouts>& where) {
+  if (!parts_.lamp) return {};
+  if (!where.value.known() || where.age > Duration::zero()) return parts_.lamp->look(image.view(), nullptr);
+  const auto& camera = where.value.camera;
+  const PlacedRobot robot = robot_of(camera.X_WC, camera.covariance, parts_.where->X_CR());
+  return parts_.lamp->look(image.view(), &robot);
+}
+
+ShadeSight VisionLoop::shade(const runtime::Aged<Whereabouts>& where, const LampSight& lamp) {
+  if (!parts_.shade) return {};
+  if (!where.value.known() || where.age > Duration::zero()) return {.status = ShadeStatus::kPoseUnknown};
+  const auto& camera = where.value.camera;
+  return parts_.shade->look(camera.X_WC, camera.covariance, lamp.known ? &lamp.lamp : nullptr);
+}
+
 color::SearchResult VisionLoop::search(WorkBudget& budget, const View& view) {
   if (view.reduced == nullptr || !parts_.tracker) return {};
   return parts_.tracker->search(*view.reduced, budget);
@@ -72,7 +94,8 @@ color::TrackedObject VisionLoop::track(WorkBudget& budget, const ImageLease& ima
 }
 
 Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
-                            const runtime::Aged<Whereabouts>& where) {
+                            const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
+                            const ShadeSight& shade) {
   const ImageView& view = image.view();
   const Duration elapsed = last_image_ == MonoTime{} ? Duration::zero() : image.stamp() - last_image_;
   last_image_ = image.stamp();
@@ -80,6 +103,9 @@ Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::
   decision.object = object.value;
   decision.object_age = object.age;
   decision.where = where.value;
+  decision.lamp = lamp.value;
+  decision.lamp_age = lamp.age;
+  decision.shade = shade;
   if (parts_.route) {
     behavior::FloorBelief here = where.value.robot;
     here.known = here.known && where.age <= kPoseKeeps;

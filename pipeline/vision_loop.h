@@ -9,7 +9,9 @@
 #include "pipeline/color/tracker.h"
 #include "pipeline/imaging/reduce.h"
 #include "pipeline/runtime/stage.h"
+#include "pipeline/what_is_shaded.h"
 #include "pipeline/where_am_i.h"
+#include "pipeline/where_is_the_lamp.h"
 #include "platform/image_lease.h"
 #include "platform/parameters.h"
 
@@ -20,6 +22,8 @@ struct Whereabouts {
   bool has_map = false;  ///< else nothing below means anything.
   localization::TrackedPose camera;
   behavior::FloorBelief robot;
+
+  [[nodiscard]] bool known() const { return has_map && robot.known; }
 };
 
 /// What one image led to.
@@ -29,6 +33,9 @@ struct Decision {
   behavior::FollowDecision follow;
   behavior::RouteDecision route;
   Whereabouts where;
+  LampSight lamp;
+  Duration lamp_age{};  ///< since the image whose probes `lamp` comes from.
+  ShadeSight shade;     ///< its masks may be gone by the time that somebody else looks; the picture stays.
   color::TrackedObject object;
   Duration
       object_age{};  ///< since the image in which `object` was looked for; more than zero when its stage was skipped.
@@ -54,10 +61,12 @@ struct Pinhole {
 struct VisionParts {
   std::optional<color::Tracker> tracker = std::nullopt;  ///< chapter 3.
   std::unique_ptr<WhereAmI> where = nullptr;             ///< chapter 4.
+  std::unique_ptr<WhereIsTheLamp> lamp = nullptr;        ///< chapter 5: the probes on the robot.
+  std::unique_ptr<WhatIsShaded> shade = nullptr;         ///< chapter 5: the masks; not without `where`.
   std::optional<behavior::Route> route = std::nullopt;  ///< the task is to drive it; without one, to follow the object.
 };
 
-/// One image through Figure 5.1, as far as it is built: every line of on_image is a stage with a row in the schedule.
+/// One image through Figure 5.1: every line of on_image is a stage with a row in the schedule.
 ///
 /// Threads: one, the vision thread. After construction nothing here allocates.
 class VisionLoop {
@@ -69,7 +78,7 @@ class VisionLoop {
   VisionLoop& operator=(const VisionLoop&) = delete;
 
   /// Gives every stage its row in the runner's schedule; to be called once, before the first image.
-  Result<void> bind() { return runner_.bind(decode_, localize_, search_, track_, decide_); }
+  Result<void> bind() { return runner_.bind(decode_, localize_, probes_, shade_, search_, track_, decide_); }
 
   /// What the base reported; to be told before the image that is exposed about then.
   void heard(const hal::Odometry& odometry);
@@ -85,11 +94,14 @@ class VisionLoop {
 
   View decode(const ImageLease& image);
   Whereabouts localize(WorkBudget& budget, const ImageLease& image, const View& view);
+  LampSight probes(const ImageLease& image, const runtime::Aged<Whereabouts>& where);
+  ShadeSight shade(const runtime::Aged<Whereabouts>& where, const LampSight& lamp);
   color::SearchResult search(WorkBudget& budget, const View& view);
   color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view,
                              const color::SearchResult& matches);
   Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
-                  const runtime::Aged<Whereabouts>& where);
+                  const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
+                  const ShadeSight& shade);
 
   template <class Output, class... Inputs>
   using StageOf = runtime::Stage<std::function<Output(Inputs...)>>;
@@ -104,9 +116,12 @@ class VisionLoop {
 
   StageOf<View, const ImageLease&> decode_;
   StageOf<Whereabouts, WorkBudget&, const ImageLease&, const View&> localize_;
+  StageOf<LampSight, const ImageLease&, const runtime::Aged<Whereabouts>&> probes_;
+  StageOf<ShadeSight, const runtime::Aged<Whereabouts>&, const LampSight&> shade_;
   StageOf<color::SearchResult, WorkBudget&, const View&> search_;
   StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&, const color::SearchResult&> track_;
-  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&, const runtime::Aged<Whereabouts>&>
+  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&, const runtime::Aged<Whereabouts>&,
+          const runtime::Aged<LampSight>&, const ShadeSight&>
       decide_;
 };
 

@@ -9,7 +9,8 @@ WhereAmI::WhereAmI(KnownSelf self)
       X_CR_(self.X_RC.inverse()),
       axle_height_m_(self.axle_height_m),
       localizer_(map_, self.camera, self.localizer),
-      tracker_(localizer_, self.X_RC, self.tracking) {
+      tracker_(localizer_, self.X_RC, self.tracking),
+      own_pixels_(std::move(self.own_pixels)) {
   tracker_.start(self.start);
 }
 
@@ -20,7 +21,7 @@ const localization::TrackedPose& WhereAmI::look(const ImageView& grey, MonoTime 
     X_OR_ = X_OR;
     tracker_.pitched(odometry->pitch_rad, axle_height_m_);
   }
-  return tracker_.see(grey, budget);
+  return tracker_.see(grey, budget, own_pixels_.empty() ? nullptr : own_pixels_.data());
 }
 
 }  // namespace cgsr

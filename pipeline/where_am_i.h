@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "pipeline/geometry/camera.h"
 #include "pipeline/localization/localizer.h"
@@ -19,6 +21,8 @@ struct KnownSelf {
   localization::LocalizerParameters localizer;
   localization::PoseTrackerParameters tracking;
   localization::Prior start;  ///< of the camera.
+  std::vector<std::uint8_t>
+      own_pixels;  ///< of the localizer's working size: where the robot sees itself; empty: nowhere.
 };
 
 /// Chapter 4 as the vision loop holds it: odometry carries the pose from exposure to exposure, images correct it.
@@ -38,6 +42,8 @@ class WhereAmI {
 
   /// \return X_WR of a pose X_WC.
   [[nodiscard]] geometry::Pose robot_at(const geometry::Pose& X_WC) const { return X_WC * X_CR_; }
+  [[nodiscard]] const geometry::Pose& X_CR() const { return X_CR_; }
+  [[nodiscard]] const world::Map& map() const { return map_; }
 
  private:
   world::Map map_;
@@ -45,6 +51,7 @@ class WhereAmI {
   double axle_height_m_;
   localization::Localizer localizer_;
   localization::PoseTracker tracker_;
+  std::vector<std::uint8_t> own_pixels_;
   OdometryTrack odometry_;
   std::optional<geometry::Pose> X_OR_;  // at the last image
 };

@@ -60,14 +60,30 @@ std::optional<hal::CameraMode> camera_mode(const config::Robot& robot, std::vect
 
 /// What chapter 4 needs.
 void look_at_map(const config::RobotLocalization& known, std::vector<std::string>& problems) {
-  if (known.map.empty()) return;
-  if (const auto map = world::load_map(known.map)) {
+  if (known.map.empty() && known.camera.empty() && known.mount.empty()) return;
+  if (known.map.empty()) {
+    fmt::print("map       none\n");
+  } else if (const auto map = world::load_map(known.map)) {
     fmt::print("map       {} surfaces, {} edges\n", map->surfaces.size(), map->edges.size());
   } else {
     problems.push_back(map.error().message);
   }
   if (const auto camera = read_camera(known.camera); !camera) problems.push_back(camera.error().message);
   if (const auto X_RC = read_mount(known.mount); !X_RC) problems.push_back(X_RC.error().message);
+}
+
+/// What chapter 5 needs.
+void look_at_board(const config::Robot& robot, std::vector<std::string>& problems) {
+  if (robot.probes.board.probes == 0) return;
+  const auto camera = read_camera(robot.localization.camera);
+  const auto X_RC = read_mount(robot.localization.mount);
+  if (!camera || !X_RC) return;  // said already where there is a map
+  const auto board = illumination::make_board(robot.probes.board, *X_RC, *camera);
+  if (!board) return problems.push_back("probes.board: " + board.error().message);
+  if (const auto checked = illumination::check_lamp(*board, robot.lamp); !checked) {
+    return problems.push_back("lamp: " + checked.error().message);
+  }
+  fmt::print("board     {} probes, lamps {:.2f} m above the floor\n", board->probes, robot.lamp.height_m);
 }
 
 /// Looks at everything that a run would need, each as far as it can be looked at without moving anything.
@@ -93,6 +109,7 @@ std::vector<std::string> problems_of(const config::Robot& robot) {
     problems.push_back(model.error().message);
   }
   look_at_map(robot.localization, problems);
+  look_at_board(robot, problems);
   if (auto schedule = runtime::Schedule::make(runtime::rows_of(robot.stage), period)) {
     fmt::print("{}", runtime::to_text(*schedule));
   } else {

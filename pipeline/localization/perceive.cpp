@@ -8,15 +8,6 @@ namespace {
 constexpr int kHalvedFrom = 400;  // shorter side, px: below, halving would cost more edges than it saves work
 constexpr std::size_t kLeastSegments = 4;
 
-geometry::Camera working_camera(const geometry::Camera& camera) {
-  if (std::min(camera.width_px, camera.height_px) < kHalvedFrom) return camera;
-  // An odd last row or column is left out: the rest must not be stretched for it.
-  geometry::Camera even = camera;
-  even.width_px -= camera.width_px % 2;
-  even.height_px -= camera.height_px % 2;
-  return even.scaled_to(even.width_px / 2, even.height_px / 2);
-}
-
 // Means of 2x2 lumas, rounded half up; kStep: bytes from one luma to the next. Both loops become vector instructions.
 template <int kStep>
 void halve(const ImageView& image, int width, int height, std::uint8_t* out) {
@@ -32,6 +23,15 @@ void halve(const ImageView& image, int width, int height, std::uint8_t* out) {
 }
 
 }  // namespace
+
+geometry::Camera working_camera(const geometry::Camera& camera) {
+  if (std::min(camera.width_px, camera.height_px) < kHalvedFrom) return camera;
+  // An odd last row or column is left out: the rest must not be stretched for it.
+  geometry::Camera even = camera;
+  even.width_px -= camera.width_px % 2;
+  even.height_px -= camera.height_px % 2;
+  return even.scaled_to(even.width_px / 2, even.height_px / 2);
+}
 
 Perception::Perception(const geometry::Camera& camera)
     : full_(camera),

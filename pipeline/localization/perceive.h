@@ -11,6 +11,9 @@
 
 namespace cgsr::localization {
 
+/// \return the camera in whose size Perception works: half of a large one's.
+geometry::Camera working_camera(const geometry::Camera& camera);
+
 /// The perception module (4.1): an image to straight edges without the lens.
 class Perception {
  public:

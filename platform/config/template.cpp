@@ -39,6 +39,13 @@ void Template::number(std::string_view name, double value, Range<double> range, 
   line(name, number_text(value), comment_of(meaning, fmt::format("{}..{}", range.minimum, range.maximum), unit));
 }
 
+void Template::numbers_line(std::string_view name, const double* values, std::size_t count, Range<double> range,
+                            std::string_view unit, std::string_view meaning) {
+  std::string list;
+  for (std::size_t i = 0; i < count; ++i) list += (i == 0 ? "" : ", ") + number_text(values[i]);
+  line(name, '[' + list + ']', comment_of(meaning, fmt::format("{}..{}", range.minimum, range.maximum), unit));
+}
+
 void Template::flag(std::string_view name, bool value, std::string_view meaning) {
   line(name, value ? "true" : "false", std::string(meaning));
 }

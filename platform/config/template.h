@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -13,6 +15,11 @@ class Template {
   void number(std::string_view name, int value, Range<int> range, std::string_view unit, std::string_view meaning);
   void number(std::string_view name, double value, Range<double> range, std::string_view unit,
               std::string_view meaning);
+  template <std::size_t kCount>
+  void numbers(std::string_view name, const std::array<double, kCount>& values, Range<double> range,
+               std::string_view unit, std::string_view meaning) {
+    numbers_line(name, values.data(), kCount, range, unit, meaning);
+  }
   void flag(std::string_view name, bool value, std::string_view meaning);
   void text(std::string_view name, const std::string& value, std::string_view meaning);
 
@@ -39,6 +46,8 @@ class Template {
   [[nodiscard]] std::string toml() const { return keys_ + sections_; }
 
  private:
+  void numbers_line(std::string_view name, const double* values, std::size_t count, Range<double> range,
+                    std::string_view unit, std::string_view meaning);
   void line(std::string_view name, const std::string& value, const std::string& comment);
 
   std::string path_;

@@ -100,6 +100,9 @@ struct Robot {
   VisionStages stage;
   Color color;
   RobotLocalization localization;
+  illumination::ProbesParameters probes;
+  illumination::LampParameters lamp;
+  ShadeStageParameters shade;
   Task task;
   behavior::FollowParameters follow;
   MotionParameters motion;
@@ -115,6 +118,9 @@ struct Robot {
     visit.section("stage", self.stage, "The schedule: which stage runs in which frame and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
     visit.section("localization", self.localization, "Where the robot is (chapter 4)");
+    visit.section("probes", self.probes, "The probe board and how it is looked at (Alg. 5.1)");
+    visit.section("lamp", self.lamp, "What is known of lamps, and how observations become one (Eq. 5.1, 5.2)");
+    visit.section("shade", self.shade, "What lies in the lamp's shadow (5.2)");
     visit.section("task", self.task, "What the robot does");
     visit.section("follow", self.follow, "Following an object: how close, how fast, and what to do when it is gone");
     visit.section("motion", self.motion, "How fast the wheels may be told to go, and when they are told to stop");
@@ -125,6 +131,9 @@ struct Robot {
     const bool live = run.pace == Pace::kLive;
     if (task.kind == TaskKind::kRoute && localization.map.empty()) {
       return "task.kind = \"route\" needs a map (localization.map): places mean nothing to a robot without one";
+    }
+    if (probes.board.probes > 0 && (localization.camera.empty() || localization.mount.empty())) {
+      return "probes.board needs localization.camera and localization.mount: shadows are measured through them";
     }
     if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
       return "localization.map needs localization.camera and localization.mount beside it";

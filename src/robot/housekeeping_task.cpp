@@ -20,6 +20,22 @@ std::string pose_columns(const Whereabouts& where) {
                      std::sqrt(camera.covariance.topLeftCorner<2, 2>().trace()));
 }
 
+/// Empty without a board.
+std::string light_columns(const Decision& decision) {
+  const LampSight& sight = decision.lamp;
+  if (!sight.has_board) return ",,,,,";
+  const auto reason = reason_of(sight);
+  std::string columns = fmt::format("\"{}\",", reason.empty() ? "seen" : reason);
+  if (sight.known) {
+    const auto& p = sight.lamp.p_WL;
+    columns +=
+        fmt::format("{:.4f},{:.4f},{:.4f},{:.4f}", p.x(), p.y(), p.z(), std::sqrt(sight.lamp.covariance.trace()));
+  } else {
+    columns += ",,,";
+  }
+  return columns + fmt::format(",\"{}\"", name_of(decision.shade.status));
+}
+
 std::string_view state_of(const Decision& decision, bool route) {
   return route ? behavior::text(decision.route.state) : behavior::text(decision.follow.state);
 }
@@ -38,7 +54,7 @@ std::string row_of(const VisionReport& report, const MotionStatus& motion, bool 
   row += fmt::format("\"{}\",{:.4f},{:.4f},{:.4f},{:.4f},{},\"{}\",", state_of(report.decision, route),
                      report.decision.goal.forward_mps, report.decision.goal.left_radps, motion.commanded.forward_mps,
                      motion.commanded.left_radps, motion.armed ? 1 : 0, text(motion.cause));
-  return row + pose_columns(report.decision.where);
+  return row + pose_columns(report.decision.where) + "," + light_columns(report.decision);
 }
 
 std::string stage_times(const runtime::FrameRecord& record, const runtime::StageTable& table) {
@@ -54,7 +70,8 @@ std::string stage_times(const runtime::FrameRecord& record, const runtime::Stage
 
 std::string run_csv_head() {
   return "frame,stamp_s,found,x,y,width,height,divergence,light_r,light_g,light_b,state,goal_mps,goal_radps,"
-         "commanded_mps,commanded_radps,armed,stop_cause,pose,corrected,reason,x_m,y_m,heading_rad,sigma_m";
+         "commanded_mps,commanded_radps,armed,stop_cause,pose,corrected,reason,x_m,y_m,heading_rad,sigma_m,"
+         "probes,lamp_x_m,lamp_y_m,lamp_z_m,lamp_sigma_m,shade";
 }
 
 void HousekeepingTask::step() {
@@ -95,6 +112,7 @@ void HousekeepingTask::take(const VisionReport& report) {
     state_ = decision.follow.state;
   }
   watch_pose(report);
+  watch_light(report);
   tally_.found += decision.object.found ? 1 : 0;
   const auto light =
       lights_.add(report.record.stamp, decision.object.found ? std::optional(decision.object.light) : std::nullopt);
@@ -104,6 +122,7 @@ void HousekeepingTask::take(const VisionReport& report) {
     truths_.add(*truth, decision.object, tally_.last_motion);
     poses_.add(*truth, decision.where, tally_.last_motion.odometry);
   }
+  lights_seen_.add(decision, truth);
   write_row(report);
   if (auto picture = picture_of(report.record.image_sequence)) {
     ++tally_.pictures;
@@ -128,6 +147,29 @@ void HousekeepingTask::watch_pose(const VisionReport& report) {
   spdlog::info("image {}: pose: {} -> {}{}{}", report.record.image_sequence, name_of(pose_), name_of(camera.state),
                camera.correction.reason == localization::Reason::kNone ? "" : ": ", name_of(camera.correction.reason));
   pose_ = camera.state;
+}
+
+void HousekeepingTask::watch_light(const VisionReport& report) {
+  const LampSight& sight = report.decision.lamp;
+  if (!sight.has_board) return;
+  const auto image = report.record.image_sequence;
+  const bool fit = sight.observation == illumination::ObservationStatus::kSeen ||
+                   sight.observation == illumination::ObservationStatus::kNoShadow;
+  if (fit != probes_fit_) spdlog::info("image {}: probes: {}", image, fit ? "well seen" : name_of(sight.observation));
+  probes_fit_ = fit;
+  if (sight.known != lamp_known_) {
+    if (sight.known) {
+      const auto& p = sight.lamp.p_WL;
+      spdlog::info("image {}: lamp: at ({:.2f}, {:.2f}, {:.2f}) m, sigma {:.3f} m", image, p.x(), p.y(), p.z(),
+                   std::sqrt(sight.lamp.covariance.trace()));
+    } else {
+      spdlog::info("image {}: lamp: gone: {}", image, reason_of(sight));
+    }
+    lamp_known_ = sight.known;
+  }
+  if (report.decision.shade.status == shade_) return;
+  spdlog::info("image {}: shade: {} -> {}", image, name_of(shade_), name_of(report.decision.shade.status));
+  shade_ = report.decision.shade.status;
 }
 
 std::optional<ImageLease> HousekeepingTask::picture_of(std::uint64_t sequence) {

@@ -12,6 +12,7 @@
 #include "src/output/plan_view.h"
 #include "src/output/text_file.h"
 #include "src/output/video_writer.h"
+#include "src/robot/light_tally.h"
 #include "src/robot/links.h"
 #include "src/robot/pose_tally.h"
 #include "src/robot/truth_tally.h"
@@ -68,6 +69,11 @@ class HousekeepingTask {
     return poses_.figures().images == 0 ? nullptr : &poses_.figures();
   }
 
+  /// \return what became of the lamp; null for a robot without probes.
+  [[nodiscard]] const LightFigures* light() const {
+    return lights_seen_.figures().looks == 0 ? nullptr : &lights_seen_.figures();
+  }
+
   /// SHA-256 over the rows of the CSV and over the pixels of the images. End the sums.
   std::string outputs_sha256() { return outputs_sum_.hex(); }
   std::string inputs_sha256() { return inputs_sum_.hex(); }
@@ -76,6 +82,7 @@ class HousekeepingTask {
   void take(const MotionStatus& status);
   void take(const VisionReport& report);
   void watch_pose(const VisionReport& report);
+  void watch_light(const VisionReport& report);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
   void write_row(const VisionReport& report);
   void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,
@@ -88,12 +95,16 @@ class HousekeepingTask {
   RunTally tally_;
   TruthTally truths_;
   PoseTally poses_;
+  LightTally lights_seen_;
   cv::Mat side_by_side_;
   color::LightHistory lights_;
   std::optional<ImageLease> next_picture_;
   behavior::FollowState state_ = behavior::FollowState::kWaiting;
   behavior::RouteState route_ = behavior::RouteState::kNowhere;
   localization::TrackState pose_ = localization::TrackState::kUnsure;
+  bool lamp_known_ = false;
+  ShadeStatus shade_ = ShadeStatus::kNoMap;
+  bool probes_fit_ = true;
   config::Sha256 outputs_sum_;
   config::Sha256 inputs_sum_;
 };

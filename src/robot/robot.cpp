@@ -10,6 +10,8 @@
 #include "hal/rmp/rmp_drive.h"
 #include "pipeline/color/learn.h"
 #include "pipeline/color/model_file.h"
+#include "pipeline/localization/perceive.h"
+#include "pipeline/own_view.h"
 #include "pipeline/world/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
@@ -17,6 +19,11 @@
 #include "src/robot/simulation_plugin.h"
 
 namespace cgsr::robot {
+namespace {
+
+constexpr double kOwnMargin_px = 4.0;  // of the localizer's image
+
+}  // namespace
 
 Result<std::unique_ptr<Robot>> Robot::build(const config::Robot& config, const RunOptions& options) {
   std::unique_ptr<Robot> robot(new Robot(config, options));
@@ -95,12 +102,10 @@ Result<void> Robot::make_tracker(VisionParts& parts, std::optional<behavior::Lea
   return {};
 }
 
-/// The map, where the robot has one.
-Result<void> Robot::make_whereabouts(VisionParts& parts) {
+/// Camera, mount and probe board, where the robot's file names them.
+Result<void> Robot::read_calibration() {
   const config::RobotLocalization& known = config_.localization;
-  if (known.map.empty()) return {};
-  auto map = world::load_map(known.map);
-  if (!map) return tl::unexpected(map.error());
+  if (known.camera.empty() || known.mount.empty()) return {};
   const auto camera = app::read_camera(known.camera);
   if (!camera) return tl::unexpected(camera.error());
   const auto X_RC = app::read_mount(known.mount);
@@ -109,20 +114,50 @@ Result<void> Robot::make_whereabouts(VisionParts& parts) {
     return fail(fmt::format("{}: is of a camera with {}x{} px, the images have {}x{}: another camera's file?",
                             known.camera, camera->width_px, camera->height_px, mode_.width_px, mode_.height_px));
   }
-  const geometry::Camera scaled = camera->scaled_to(mode_.width_px, mode_.height_px);
+  camera_model_ = camera->scaled_to(mode_.width_px, mode_.height_px);
+  X_RC_ = *X_RC;
+  if (config_.probes.board.probes == 0) return {};
+  auto board = illumination::make_board(config_.probes.board, X_RC_, *camera_model_);
+  if (!board) return fail(fmt::format("probes.board: {}", board.error().message));
+  if (auto checked = illumination::check_lamp(*board, config_.lamp); !checked) {
+    return fail(fmt::format("lamp: {}", checked.error().message));
+  }
+  board_ = *board;
+  return {};
+}
+
+/// The probes, where the robot carries some, and the shadows that follow from their lamp.
+Result<void> Robot::make_light(VisionParts& parts) {
+  if (!board_) return {};
+  parts.lamp = std::make_unique<WhereIsTheLamp>(*board_, config_.probes, config_.lamp);
+  notes_.push_back(fmt::format("board with {} probe{}", board_->probes, board_->probes == 1 ? "" : "s"));
+  if (parts.where) parts.shade = std::make_unique<WhatIsShaded>(parts.where->map(), *camera_model_, config_.shade);
+  return {};
+}
+
+/// The map, where the robot has one.
+Result<void> Robot::make_whereabouts(VisionParts& parts) {
+  const config::RobotLocalization& known = config_.localization;
+  if (known.map.empty()) return {};
+  auto map = world::load_map(known.map);
+  if (!map) return tl::unexpected(map.error());
   const auto first_image = known.start.marker.id < 0 ? Result<ImageLease>{} : first();
   if (!first_image) return tl::unexpected(first_image.error());
-  auto boot = boot_pose(known.start, scaled, *X_RC, first_image->view());
+  auto boot = boot_pose(known.start, *camera_model_, X_RC_, first_image->view());
   if (!boot) return tl::unexpected(boot.error());
   KnownSelf self;
   notes_.push_back(fmt::format("map {}: {} surfaces, {} edges", known.map, map->surfaces.size(), map->edges.size()));
   self.map = std::move(*map);
-  self.camera = scaled;
-  self.X_RC = *X_RC;
+  self.camera = *camera_model_;
+  self.X_RC = X_RC_;
   self.axle_height_m = known.axle_height_m;
   self.localizer = known.localizer;
   self.tracking = known.tracker;
   self.start = boot->prior;
+  if (board_) {
+    const geometry::Camera working = localization::working_camera(*camera_model_);
+    self.own_pixels = own_pixels(*board_, working, X_RC_, kOwnMargin_px);
+  }
   notes_.push_back("begins where " + boot->words + " says");
   parts.where = std::make_unique<WhereAmI>(std::move(self));
   return {};
@@ -131,8 +166,10 @@ Result<void> Robot::make_whereabouts(VisionParts& parts) {
 Result<void> Robot::make_loops() {
   VisionParts parts;
   std::optional<behavior::LearnedSize> learned;
+  if (auto read = read_calibration(); !read) return read;
   if (auto made = make_tracker(parts, learned); !made) return made;
   if (auto made = make_whereabouts(parts); !made) return made;
+  if (auto made = make_light(parts); !made) return made;
   if (config_.task.kind == config::TaskKind::kRoute) {
     auto places = behavior::parse_places(config_.task.route.places_m);
     if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));

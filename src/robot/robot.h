@@ -8,6 +8,7 @@
 #include "hal/camera.h"
 #include "hal/simulation.h"
 #include "hal/switches.h"
+#include "pipeline/illumination/board.h"
 #include "pipeline/motion_loop.h"
 #include "pipeline/vision_loop.h"
 #include "platform/clock.h"
@@ -55,6 +56,8 @@ class Robot {
   Result<color::ColorModel> learn_or_load();
   Result<void> make_tracker(VisionParts& parts, std::optional<behavior::LearnedSize>& size);
   Result<void> make_whereabouts(VisionParts& parts);
+  Result<void> make_light(VisionParts& parts);
+  Result<void> read_calibration();
   Result<void> make_loops();
   Result<void> open_outputs();
   Result<void> open_base();
@@ -75,6 +78,9 @@ class Robot {
   MonoTime first_due_{};                         // when the first image for the loops is there
   std::unique_ptr<hal::Camera> camera_;          // before everything that holds leases, so that it goes after them
   hal::CameraMode mode_;
+  std::optional<geometry::Camera> camera_model_;  // as calibrated, in the size of the images that come
+  geometry::Pose X_RC_ = geometry::Pose::Identity();
+  std::optional<illumination::Board> board_;
   Links links_;
   std::vector<std::string> notes_;
   std::unique_ptr<runtime::StageRunner> runner_;

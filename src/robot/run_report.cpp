@@ -1,5 +1,6 @@
 #include "src/robot/run_report.h"
 
+#include <cmath>
 #include <numbers>
 
 #include <fmt/core.h>
@@ -95,6 +96,40 @@ std::string pose_text(const PoseFigures& pose) {
       100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_ends_off_m);
 }
 
+Json light_json(const LightFigures& light) {
+  Json json{{"looks", light.looks}, {"known", light.known}, {"masked", light.masked}};
+  json["unanswered"] = Json::object();
+  for (const auto& [reason, images] : light.unanswered) json["unanswered"][std::string(reason)] = images;
+  if (light.last) {
+    const auto& p = light.last->p_WL;
+    json["lamp"] = {p.x(), p.y(), p.z()};
+    json["lamp_sigma_m"] = std::sqrt(light.last->covariance.trace());
+  }
+  if (light.compared > 0) {
+    json["mean_cm"] = 100.0 * light.mean_m;
+    json["worst_cm"] = 100.0 * light.worst_m;
+    json["last_cm"] = 100.0 * light.last_m;
+  }
+  return json;
+}
+
+std::string light_text(const LightFigures& light) {
+  std::string text = fmt::format("lamp: probes looked at in {} images", light.looks);
+  for (const auto& [reason, images] : light.unanswered) text += fmt::format(", {} {}", images, reason);
+  text += fmt::format("; known in {} images, masks in {}\n", light.known, light.masked);
+  if (light.last) {
+    const auto& p = light.last->p_WL;
+    text += fmt::format("last at ({:.3f}, {:.3f}, {:.3f}) m, sigma {:.3f} m", p.x(), p.y(), p.z(),
+                        std::sqrt(light.last->covariance.trace()));
+    if (light.compared > 0) {
+      text += fmt::format("; by truth off by {:.1f} cm at the end, {:.1f} cm in the mean, {:.1f} cm at worst",
+                          100.0 * light.last_m, 100.0 * light.mean_m, 100.0 * light.worst_m);
+    }
+    text += "\n";
+  }
+  return text + "\n";
+}
+
 std::string in_words(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.2f}{}", *value, unit) : "never happened";
 }
@@ -140,6 +175,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   json["motion"] = motion_json(tally);
   if (const TruthFigures* truth = housekeeping.truth()) json["truth"] = truth_json(*truth);
   if (const PoseFigures* pose = housekeeping.pose_truth()) json["pose"] = pose_json(*pose);
+  if (const LightFigures* light = housekeeping.light()) json["light"] = light_json(*light);
   json["stages"] = stages_json(housekeeping.table());
   visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
     json["rings"][name] = {{"capacity", ring.capacity},
@@ -166,6 +202,7 @@ std::string summary_text(Robot& robot, const std::string& ended_by) {
                       last.commanded.left_radps, cgsr::text(last.cause));
   if (const TruthFigures* truth = housekeeping.truth()) text += truth_text(*truth);
   if (const PoseFigures* pose = housekeeping.pose_truth()) text += pose_text(*pose);
+  if (const LightFigures* light = housekeeping.light()) text += light_text(*light);
   text += runtime::to_text(housekeeping.table());
   text += "\nring          capacity  high water  pushed  dropped  skipped\n";
   visit_rings(robot.links(), [&text](const char* name, const RingStatistics& ring) {

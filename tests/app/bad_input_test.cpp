@@ -161,7 +161,7 @@ TEST_F(BadInputFault, ScheduleThatDoesNotFitShowsTheSum) {
   write_text(scratch_ / "full.toml", text);
   const auto outcome = run_cgsr({"check", "--config", scratch_ / "full.toml", "--input", images(), "--model", model()});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("165000"));
+  EXPECT_THAT(outcome.errors, HasSubstr("231000"));
 }
 
 TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {

@@ -25,6 +25,13 @@ class Audit {
     check_unit(name, unit);
     check_name(name, meaning);
   }
+  template <std::size_t kCount>
+  void numbers(std::string_view name, const std::array<double, kCount>& values, Range<double> range,
+               std::string_view unit, std::string_view meaning) {
+    for (const double value : values) check_range(name, value, range.minimum, range.maximum);
+    check_unit(name, unit);
+    check_name(name, meaning);
+  }
   void flag(std::string_view name, bool, std::string_view meaning) { check_name(name, meaning); }
   void text(std::string_view name, const std::string&, std::string_view meaning) { check_name(name, meaning); }
 
@@ -58,7 +65,7 @@ class Audit {
 
   // A key that has a dimension ends in its unit.
   void check_unit(std::string_view name, std::string_view unit) {
-    for (const std::string_view count : {"", "1", "frames", "nat", "sets", "commands"}) {
+    for (const std::string_view count : {"", "1", "frames", "nat", "sets", "commands", "cells", "grey levels"}) {
       if (unit == count) return;  // no dimension
     }
     struct Suffix {

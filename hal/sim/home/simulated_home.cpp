@@ -106,6 +106,20 @@ Pose leaning(const BaseState& base, double axle_height_m) {
   return X_WR * lean;
 }
 
+/// The lamp that lights a place most, as if nothing stood between; -1: none burns.
+int lamp_near(const SceneState& state, const Eigen::Vector3d& p_W) {
+  int nearest = -1;
+  double most = 0.0;
+  for (std::size_t i = 0; i < state.lamps.size(); ++i) {
+    const double light = static_cast<double>(state.lamps[i].intensity_cd.maxCoeff()) /
+                         std::max(1e-6, (state.lamps[i].p_WL - p_W).squaredNorm());
+    if (light <= most) continue;
+    most = light;
+    nearest = static_cast<int>(i);
+  }
+  return nearest;
+}
+
 /// The lines as the robot's program has them, while the home looks at their levels.
 class LinesPort final : public hal::Switches {
  public:
@@ -215,6 +229,12 @@ void SimulatedHome::remember(MonoTime stamp, MonoTime middle, const Moment& mome
   const Eigen::Quaterniond q(moment.X_WC.linear());
   for (int i = 0; i < 3; ++i) truth.camera_m[static_cast<std::size_t>(i)] = moment.X_WC.translation()(i);
   truth.camera_wxyz = {q.w(), q.x(), q.y(), q.z()};
+  const int lamp = lamp_near(moment.state, moment.X_WC.translation());
+  if (lamp >= 0) {
+    truth.lamp_burns = true;
+    const Eigen::Vector3d& p_WL = moment.state.lamps[static_cast<std::size_t>(lamp)].p_WL;
+    truth.lamp_m = {p_WL.x(), p_WL.y(), p_WL.z()};
+  }
   truth.robot_forward_mps = base.velocity.forward_mps;
   truth.robot_pitch_rad = base.pitch_rad;
   if (object_ >= 0) {
@@ -232,9 +252,11 @@ void SimulatedHome::remember(MonoTime stamp, MonoTime middle, const Moment& mome
     truth.distance_m = away.norm();
     truth.nearing_mps = truth.distance_m > 0.0 ? -velocity.dot(away) / truth.distance_m : 0.0;
     photographer_->renderer().move_to(moment.state);  // an image out of the cache moved nothing
-    const FigureView view = figure_view(photographer_->renderer(), moment.state, moment.X_WC, object_, object_parts_);
+    const FigureView view =
+        figure_view(photographer_->renderer(), moment.state, moment.X_WC, object_, object_parts_, lamp);
     truth.in_view = truth.there && view.in_view;
     truth.box = view.visible;
+    if (view.visible_px > 0) truth.object_lit_share = static_cast<double>(view.lit_px) / view.visible_px;
   }
   const std::lock_guard lock(truth_mutex_);
   truths_.push_back(truth);

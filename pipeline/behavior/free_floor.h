@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pipeline/world/map.h"
+#include "platform/parameters.h"
+
+namespace cgsr::behavior {
+
+struct FreeFloorParameters {
+  double clearance_m = 0.40;
+  double lowest_m = 0.03;
+  double tallest_m = 1.35;
+  double cell_m = 0.05;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("clearance_m", self.clearance_m, {0.0, 3.0}, "m", "from the robot's middle to whatever the map holds");
+    visit.number("lowest_m", self.lowest_m, {0.0, 1.0}, "m", "what is lower can be driven over");
+    visit.number("tallest_m", self.tallest_m, {0.1, 5.0}, "m", "what is higher is driven under");
+    visit.number("cell_m", self.cell_m, {0.01, 0.5}, "m", "of the grid in which that is worked out");
+  }
+};
+
+/// Where on the floor a robot may be by its map, as a grid that is worked out once. What the map does not hold is not kept clear of: the robot
+/// has no obstacle sensor.
+///
+/// Threads: any number may ask. No query allocates.
+class FreeFloor {
+ public:
+  FreeFloor(const world::Map& map, const FreeFloorParameters& parameters);
+
+  [[nodiscard]] bool is_free(double x_m, double y_m) const;
+
+  /// How far one can go from a place straight along a heading, at most `longest_m`; 0 when the place itself is not free.
+  [[nodiscard]] double way_m(double x_m, double y_m, double heading_rad, double longest_m) const;
+
+ private:
+  void block(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c);
+  void grow();
+
+  FreeFloorParameters parameters_;
+  double x_min_m_ = 0.0;
+  double y_min_m_ = 0.0;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::uint8_t> blocked_;
+};
+
+}  // namespace cgsr::behavior

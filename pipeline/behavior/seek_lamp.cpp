@@ -1,0 +1,362 @@
+#include "pipeline/behavior/seek_lamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+#include "pipeline/behavior/ramp.h"
+
+namespace cgsr::behavior {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kWorthGoing_m = 0.15;  // a shorter way is none
+constexpr double kHold_s = 0.8;         // for a shadow to become sure
+constexpr double kTired_s = 2.0;        // before another one is stood still for
+constexpr double kLampGone_s = 2.0;
+constexpr int kHeadings = 24;
+
+double bearing_of(const FloorBelief& here, const Place& place) {
+  return std::remainder(std::atan2(place.y_m - here.y_m, place.x_m - here.x_m) - here.heading_rad, kTurn);
+}
+
+double way_between(const FloorBelief& here, const Place& place) {
+  return std::hypot(place.x_m - here.x_m, place.y_m - here.y_m);
+}
+
+bool moves(SeekState state) {
+  return state == SeekState::kExploring || state == SeekState::kApproaching || state == SeekState::kLocating ||
+         state == SeekState::kBackingOff;
+}
+
+}  // namespace
+
+std::string_view text(SeekState state) {
+  switch (state) {
+    case SeekState::kWaiting:
+      return "waiting";
+    case SeekState::kExploring:
+      return "exploring";
+    case SeekState::kApproaching:
+      return "approaching the lamp";
+    case SeekState::kLocating:
+      return "locating the lamp";
+    case SeekState::kBackingOff:
+      return "backing off";
+    case SeekState::kShading:
+      return "finding shaded regions";
+    case SeekState::kTracking:
+      return "tracking";
+    case SeekState::kAmbient:
+      return "tracking, ambient light only";
+    case SeekState::kStopped:
+      return "stopped";
+  }
+  return "unknown";
+}
+
+std::string_view text(SeekReason reason) {
+  switch (reason) {
+    case SeekReason::kBegun:
+      return "begun";
+    case SeekReason::kPoseKnown:
+      return "where it is is known";
+    case SeekReason::kShadowSeen:
+      return "the probes throw a shadow";
+    case SeekReason::kSteepEnough:
+      return "the light comes from high enough";
+    case SeekReason::kNoWayNearer:
+      return "no free way nearer";
+    case SeekReason::kLampKnown:
+      return "the lamp is known well enough";
+    case SeekReason::kTimeIsUp:
+      return "time is up, the lamp is known roughly";
+    case SeekReason::kLampGone:
+      return "the lamp is gone";
+    case SeekReason::kFarEnough:
+      return "as far as it should";
+    case SeekReason::kNoWayFarther:
+      return "no free way farther";
+    case SeekReason::kMasked:
+      return "there are masks";
+    case SeekReason::kNoMask:
+      return "no masks in time";
+    case SeekReason::kNoShadow:
+      return "explored without a shadow";
+    case SeekReason::kNoBoard:
+      return "no probe board";
+    case SeekReason::kBoardUnreadable:
+      return "the probe board cannot be read";
+    case SeekReason::kPoseLost:
+      return "where it is is not known any more";
+  }
+  return "unknown";
+}
+
+void SeekLamp::go_on(SeekState state, SeekReason reason) {
+  state_ = state;
+  reason_ = reason;
+  in_state_s_ = 0.0;
+  held_s_ = 0.0;
+  on_the_way_ = false;
+  turned_rad_ = 0.0;
+  leg_ = Leg::kChoose;
+}
+
+SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, Duration elapsed) {
+  elapsed_s_ = std::clamp(to_seconds(elapsed), 0.0, 0.2);
+  in_state_s_ += elapsed_s_;
+  without_pose_s_ = here.known ? 0.0 : without_pose_s_ + elapsed_s_;
+  unreadable_s_ = lamp.readable ? 0.0 : unreadable_s_ + elapsed_s_;
+  unknown_s_ = lamp.known ? 0.0 : unknown_s_ + elapsed_s_;
+  if (lamp.known) {
+    lamp_ = {lamp.x_m, lamp.y_m};
+    lamp_z_m_ = lamp.z_m;
+  }
+
+  SeekDecision decision;
+  if (moves(state_) && without_pose_s_ > parameters_.pose_lost_s) go_on(SeekState::kStopped, SeekReason::kPoseLost);
+  const bool needs_board =
+      state_ == SeekState::kExploring || state_ == SeekState::kApproaching || state_ == SeekState::kLocating;
+  if (needs_board && unreadable_s_ > parameters_.probes_lost_s) {
+    go_on(SeekState::kAmbient, SeekReason::kBoardUnreadable);
+  }
+  const Velocity target = moves(state_) && !here.known ? Velocity{} : wanted(here, lamp);
+  decision.halt = state_ == SeekState::kStopped || (moves(state_) && !here.known);
+  if (decision.halt) {
+    goal_ = {};
+  } else {
+    goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.acceleration_limit_mps2,
+                             parameters_.acceleration_limit_mps2, elapsed_s_);
+    goal_.left_radps = ramp(goal_.left_radps, target.left_radps, parameters_.turn_acceleration_limit_radps2,
+                            parameters_.turn_acceleration_limit_radps2, elapsed_s_);
+  }
+  decision.goal = goal_;
+  decision.state = state_;
+  decision.reason = reason_;
+  decision.places = visits_;
+  return decision;
+}
+
+Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
+  switch (state_) {
+    case SeekState::kWaiting:
+      if (!lamp.has_board) {
+        go_on(SeekState::kAmbient, SeekReason::kNoBoard);
+      } else if (here.known) {
+        start_ = here;
+        last_heading_rad_ = here.heading_rad;
+        go_on(SeekState::kExploring, SeekReason::kPoseKnown);
+      }
+      return {};
+    case SeekState::kExploring:
+      return explore(here, lamp);
+    case SeekState::kApproaching:
+      return approach(here, lamp);
+    case SeekState::kLocating:
+      return locate(here, lamp);
+    case SeekState::kBackingOff:
+      return back_off(here, lamp);
+    case SeekState::kShading:
+      return shade(lamp);
+    case SeekState::kTracking:
+    case SeekState::kStopped:
+      return {};
+    case SeekState::kAmbient:  // somebody switched it on
+      if (lamp.has_board && lamp.known && here.known) go_on(SeekState::kLocating, SeekReason::kShadowSeen);
+      middle_rad_ = here.heading_rad;
+      return {};
+  }
+  return {};
+}
+
+Velocity SeekLamp::explore(const FloorBelief& here, const LampBelief& lamp) {
+  if (lamp.known) {
+    go_on(SeekState::kApproaching, SeekReason::kShadowSeen);
+    return {};
+  }
+  tired_s_ = std::max(0.0, tired_s_ - elapsed_s_);
+  if (held_s_ > 0.0 || (lamp.seen && tired_s_ <= 0.0)) {
+    held_s_ += elapsed_s_;
+    if (held_s_ < kHold_s) return {};
+    held_s_ = 0.0;
+    tired_s_ = kTired_s;
+  }
+  turned_rad_ += std::abs(std::remainder(here.heading_rad - last_heading_rad_, kTurn));
+  last_heading_rad_ = here.heading_rad;
+  if (on_the_way_) {
+    if (way_between(here, next_) > parameters_.reached_m) return towards(here, next_);
+    on_the_way_ = false;
+    turned_rad_ = 0.0;
+  }
+  if (turned_rad_ < kTurn) return {0.0, parameters_.explore_turn_radps};
+  if (visits_ < kMostVisited) visited_[static_cast<std::size_t>(visits_)] = {here.x_m, here.y_m};
+  ++visits_;
+  if (visits_ >= std::min(parameters_.explore_places, kMostVisited)) {
+    go_on(SeekState::kAmbient, SeekReason::kNoShadow);
+    return {};
+  }
+  choose_next_place(here);
+  return {};
+}
+
+/// As far from all places that were looked at as a step can lead.
+void SeekLamp::choose_next_place(const FloorBelief& here) {
+  double best = -1.0;
+  next_ = {here.x_m, here.y_m};
+  for (int i = 0; i < kHeadings; ++i) {
+    const double heading = here.heading_rad + kTurn * i / kHeadings;
+    const double way = way_m(here, heading, parameters_.explore_step_m);
+    if (way < kWorthGoing_m) continue;
+    const Place place{here.x_m + way * std::cos(heading), here.y_m + way * std::sin(heading)};
+    double nearest = way;
+    for (int k = 0; k < visits_; ++k) {
+      const Place& other = visited_[static_cast<std::size_t>(k)];
+      nearest = std::min(nearest, std::hypot(other.x_m - place.x_m, other.y_m - place.y_m));
+    }
+    // Where there is much floor beyond, the next steps lead on.
+    const double score = nearest + 0.1 * way_m(here, heading, 4.0 * parameters_.explore_step_m);
+    if (score <= best) continue;
+    best = score;
+    next_ = place;
+  }
+  on_the_way_ = true;
+}
+
+double SeekLamp::board_to_lamp_m(const FloorBelief& here) const {
+  const double x = here.x_m + board_.forward_m * std::cos(here.heading_rad);
+  const double y = here.y_m + board_.forward_m * std::sin(here.heading_rad);
+  return std::hypot(lamp_.x_m - x, lamp_.y_m - y);
+}
+
+Velocity SeekLamp::approach(const FloorBelief& here, const LampBelief& /*lamp*/) {
+  if (unknown_s_ > kLampGone_s) {
+    go_on(SeekState::kExploring, SeekReason::kLampGone);
+    return {};
+  }
+  const auto measure = [&](SeekReason reason) {
+    go_on(SeekState::kLocating, reason);
+    middle_rad_ = here.heading_rad;
+    return Velocity{};
+  };
+  const double good_m = std::max(parameters_.nearest_m,
+                                 (lamp_z_m_ - board_.height_m) * std::tan(parameters_.good_angle_deg * kRadPerDeg));
+  if (board_to_lamp_m(here) <= good_m) return measure(SeekReason::kSteepEnough);
+  const double left_m = way_between(here, lamp_) - board_.forward_m - good_m;
+  const double heading = here.heading_rad + bearing_of(here, lamp_);
+  const double way = way_m(here, heading, std::max(0.0, left_m) + parameters_.reached_m);
+  if (way < kWorthGoing_m) return measure(left_m < kWorthGoing_m ? SeekReason::kSteepEnough : SeekReason::kNoWayNearer);
+  next_ = {here.x_m + way * std::cos(heading), here.y_m + way * std::sin(heading)};
+  return towards(here, next_);
+}
+
+Velocity SeekLamp::locate(const FloorBelief& here, const LampBelief& lamp) {
+  if (unknown_s_ > kLampGone_s) {
+    go_on(SeekState::kExploring, SeekReason::kLampGone);
+    return {};
+  }
+  const bool good = lamp.known && lamp.sigma_m <= parameters_.good_sigma_m;
+  if (good && in_state_s_ >= parameters_.locate_least_s) {
+    go_on(SeekState::kBackingOff, SeekReason::kLampKnown);
+    return {};
+  }
+  if (in_state_s_ >= parameters_.locate_most_s) {
+    go_on(SeekState::kBackingOff, SeekReason::kTimeIsUp);
+    return {};
+  }
+  bool there = false;
+  const double aside = parameters_.locate_turn_deg * kRadPerDeg;
+  const Velocity turn = facing(here, middle_rad_ + (to_the_left_ ? aside : -aside), there);
+  if (there) to_the_left_ = !to_the_left_;
+  return turn;
+}
+
+void SeekLamp::choose_way_back(const FloorBelief& here) {
+  const double straight = std::atan2(here.y_m - lamp_.y_m, here.x_m - lamp_.x_m);
+  double best = -1.0;
+  double way_there = 0.0;
+  away_rad_ = straight;
+  for (int i = -kHeadings / 2; i <= kHeadings / 2; ++i) {
+    const double aside = 2.0 * i * parameters_.back_off_aside_deg * kRadPerDeg / kHeadings;
+    const double way = way_m(here, straight + aside, parameters_.back_off_m);
+    const double score = way * std::cos(0.5 * aside);
+    if (score <= best) continue;
+    best = score;
+    away_rad_ = straight + aside;
+    way_there = way;
+  }
+  far_enough_ = way_there >= parameters_.back_off_m - parameters_.reached_m;
+  next_ = {here.x_m + way_there * std::cos(away_rad_), here.y_m + way_there * std::sin(away_rad_)};
+  leg_ = way_there < kWorthGoing_m ? Leg::kTurnBack : Leg::kTurnAway;
+}
+
+Velocity SeekLamp::back_off(const FloorBelief& here, const LampBelief& /*lamp*/) {
+  if (leg_ == Leg::kChoose) choose_way_back(here);
+  bool there = false;
+  if (leg_ == Leg::kTurnAway) {
+    const Velocity turn = facing(here, away_rad_, there);
+    if (!there) return turn;
+    leg_ = Leg::kDrive;
+  }
+  if (leg_ == Leg::kDrive) {
+    if (way_between(here, next_) > parameters_.reached_m &&
+        std::abs(bearing_of(here, next_)) < std::numbers::pi / 2.0) {
+      return towards(here, next_);
+    }
+    leg_ = Leg::kTurnBack;
+  }
+  const Velocity turn = facing(here, here.heading_rad + bearing_of(here, lamp_), there);
+  if (there) go_on(SeekState::kShading, far_enough_ ? SeekReason::kFarEnough : SeekReason::kNoWayFarther);
+  return there ? Velocity{} : turn;
+}
+
+Velocity SeekLamp::shade(const LampBelief& lamp) {
+  if (lamp.masked) {
+    go_on(SeekState::kTracking, SeekReason::kMasked);
+  } else if (in_state_s_ >= parameters_.shade_most_s) {
+    go_on(SeekState::kTracking, SeekReason::kNoMask);
+  }
+  return {};
+}
+
+bool SeekLamp::in_area(double x_m, double y_m) const {
+  if (!area_.enabled) return true;
+  const double c = std::cos(start_.heading_rad);
+  const double s = std::sin(start_.heading_rad);
+  const double dx = x_m - start_.x_m;
+  const double dy = y_m - start_.y_m;
+  const double x = c * dx + s * dy;
+  const double y = c * dy - s * dx;
+  return x >= area_.x_min_m && x <= area_.x_max_m && y >= area_.y_min_m && y <= area_.y_max_m;
+}
+
+double SeekLamp::way_m(const FloorBelief& here, double heading_rad, double longest_m) const {
+  if (!floor_) return 0.0;
+  const double free = floor_->way_m(here.x_m, here.y_m, heading_rad, longest_m);
+  const double dx = std::cos(heading_rad);
+  const double dy = std::sin(heading_rad);
+  double way = 0.0;  // the area is convex
+  constexpr double kStep_m = 0.05;
+  while (way < free && in_area(here.x_m + (way + kStep_m) * dx, here.y_m + (way + kStep_m) * dy)) way += kStep_m;
+  return std::min(way, free);
+}
+
+Velocity SeekLamp::towards(const FloorBelief& here, const Place& place) const {
+  const double bearing = bearing_of(here, place);
+  const double ahead = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.turn_first_rad);
+  const double way = way_between(here, place);
+  return {std::min(parameters_.forward_mps, parameters_.approach_per_s * way) * ahead,
+          std::clamp(parameters_.turn_per_s * bearing, -parameters_.turn_limit_radps, parameters_.turn_limit_radps)};
+}
+
+Velocity SeekLamp::facing(const FloorBelief& here, double heading_rad, bool& done) const {
+  const double off = std::remainder(heading_rad - here.heading_rad, kTurn);
+  done = std::abs(off) <= parameters_.facing_deg * kRadPerDeg;
+  // Slower than this the base would not turn at all.
+  const double rate = std::clamp(parameters_.turn_per_s * std::abs(off), 0.08, parameters_.turn_limit_radps);
+  return {0.0, std::copysign(rate, off)};
+}
+
+}  // namespace cgsr::behavior

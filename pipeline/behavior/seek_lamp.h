@@ -1,0 +1,218 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "pipeline/behavior/free_floor.h"
+#include "pipeline/behavior/route.h"
+#include "pipeline/behavior/velocity.h"
+#include "platform/parameters.h"
+#include "platform/time.h"
+
+namespace cgsr::behavior {
+
+/// Section [task.lamp]: Algorithm 5.2.
+struct SeekLampParameters {
+  double explore_turn_radps = 0.5;
+  double explore_step_m = 1.2;
+  int explore_places = 5;
+  double good_angle_deg = 42.0;
+  double nearest_m = 0.6;
+  double locate_least_s = 3.0;
+  double locate_most_s = 10.0;
+  double locate_turn_deg = 25.0;
+  double good_sigma_m = 0.05;
+  double back_off_m = 5.0;
+  double back_off_aside_deg = 50.0;
+  double shade_most_s = 4.0;
+  double forward_mps = 0.35;
+  double approach_per_s = 0.8;
+  double turn_per_s = 1.2;
+  double turn_limit_radps = 0.5;
+  double turn_first_rad = 0.35;
+  double acceleration_limit_mps2 = 0.3;
+  double turn_acceleration_limit_radps2 = 1.0;
+  double reached_m = 0.10;
+  double facing_deg = 2.0;
+  double pose_lost_s = 2.0;
+  double probes_lost_s = 4.0;
+  FreeFloorParameters floor;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("explore_turn_radps", self.explore_turn_radps, {0.05, 2.0}, "rad/s",
+                 "turn rate while shadows are looked for, once around at every place");
+    visit.number("explore_step_m", self.explore_step_m, {0.1, 10.0}, "m", "from one place to the next");
+    visit.number("explore_places", self.explore_places, {1, 100}, "",
+                 "places without a shadow after which only ambient light is reckoned with");
+    visit.number("good_angle_deg", self.good_angle_deg, {5.0, 80.0}, "deg",
+                 "a lamp further from the vertical is gone nearer to before it is measured");
+    visit.number("nearest_m", self.nearest_m, {0.0, 10.0}, "m", "but never nearer than this, along the floor");
+    visit.number("locate_least_s", self.locate_least_s, {0.0, 60.0}, "s", "how long the lamp is measured at the least");
+    visit.number("locate_most_s", self.locate_most_s, {0.1, 120.0}, "s", "and at most");
+    visit.number("locate_turn_deg", self.locate_turn_deg, {0.0, 90.0}, "deg",
+                 "to each side meanwhile: turning tells the lamp from errors of the board");
+    visit.number("good_sigma_m", self.good_sigma_m, {0.001, 1.0}, "m", "a lamp that is known so well is measured");
+    visit.number("back_off_m", self.back_off_m, {0.0, 50.0}, "m", "away from the lamp, as far as there is a free way");
+    visit.number("back_off_aside_deg", self.back_off_aside_deg, {0.0, 180.0}, "deg",
+                 "how far from straight away the way may lead where it is free for longer");
+    visit.number("shade_most_s", self.shade_most_s, {0.1, 60.0}, "s", "how long masks are waited for");
+    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "speed on the way");
+    visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
+                 "speed for each metre that is left, where that is less");
+    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
+    visit.number("turn_limit_radps", self.turn_limit_radps, {0.05, 2.0}, "rad/s", "fastest turn");
+    visit.number("turn_first_rad", self.turn_first_rad, {0.05, 3.2}, "rad",
+                 "bearing at which the robot only turns; the speed falls linearly on the way there");
+    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.05, 3.0}, "m/s²",
+                 "steepest change of speed");
+    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 10.0}, "rad/s²",
+                 "steepest change of the turn rate");
+    visit.number("reached_m", self.reached_m, {0.01, 1.0}, "m", "so near a place counts as reached");
+    visit.number("facing_deg", self.facing_deg, {0.1, 30.0}, "deg", "so near a heading counts as turned to");
+    visit.number("pose_lost_s", self.pose_lost_s, {0.1, 60.0}, "s", "without a pose on its way, after which it stops");
+    visit.number("probes_lost_s", self.probes_lost_s, {0.1, 60.0}, "s",
+                 "without a board that can be read, after which only ambient light is reckoned with");
+    visit.section("floor", self.floor, "Which floor is free, by the map");
+  }
+};
+
+/// What chapter 5's stages say about the lamp, as the behaviour sees it.
+struct LampBelief {
+  bool has_board = false;
+  bool readable = false;  ///< the board is where it should be: an image without a shadow then means something.
+  bool seen = false;      ///< this image shows a shadow that gives a lamp.
+  bool known = false;     ///< many images agree on a lamp, in the world:
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  double sigma_m = 0.0;  ///< of its place, the root of the covariance's trace.
+  bool masked = false;   ///< there are masks of what lies in its shadow.
+};
+
+/// The probes' place on the robot.
+struct BoardPlace {
+  double forward_m = 0.44;
+  double height_m = 0.90;
+};
+
+/// The rectangle that the robot may not leave, seen from where and whither it looked at the start.
+struct KeptArea {
+  bool enabled = false;
+  double x_min_m = 0.0;
+  double x_max_m = 0.0;
+  double y_min_m = 0.0;
+  double y_max_m = 0.0;
+};
+
+enum class SeekState : std::uint8_t {
+  kWaiting,      ///< where it is is not known yet: stands.
+  kExploring,    ///< turns and moves until the probes throw a shadow (line 3).
+  kApproaching,  ///< goes nearer to a lamp that stands low: a small angle measures better.
+  kLocating,     ///< measures the lamp (line 6).
+  kBackingOff,   ///< turns away, drives, turns back: it is blind backwards (line 10).
+  kShading,      ///< stands until there are masks (line 11).
+  kTracking,     ///< stands and tracks (lines 12 to 14).
+  kAmbient,      ///< no shadow was found: stands and tracks without a mask.
+  kStopped,      ///< a fault ended it; stands.
+};
+std::string_view text(SeekState state);
+
+enum class SeekReason : std::uint8_t {
+  kBegun,
+  kPoseKnown,
+  kShadowSeen,
+  kSteepEnough,
+  kNoWayNearer,
+  kLampKnown,
+  kTimeIsUp,
+  kLampGone,
+  kFarEnough,
+  kNoWayFarther,
+  kMasked,
+  kNoMask,
+  kNoShadow,
+  kNoBoard,
+  kBoardUnreadable,
+  kPoseLost,
+};
+std::string_view text(SeekReason reason);
+
+struct SeekDecision {
+  Velocity goal;
+  bool halt = false;  ///< no ramp.
+  SeekState state = SeekState::kWaiting;
+  SeekReason reason = SeekReason::kBegun;  ///< of the last change of state.
+  int places = 0;                          ///< looked around at, while exploring.
+};
+
+/// Algorithm 5.2: explore until the probes throw a shadow, locate the lamp, back off, find the shaded regions, track. It sees no obstacles: its
+/// ways keep clear of what the map holds, and inside of the area that it is kept in.
+///
+/// Threads: one; decide allocates nothing.
+class SeekLamp {
+ public:
+  /// \param floor  may be null: then there is no map, and no way is free.
+  SeekLamp(const SeekLampParameters& parameters, std::shared_ptr<const FreeFloor> floor, const BoardPlace& board,
+           const KeptArea& area)
+      : parameters_(parameters), floor_(std::move(floor)), board_(board), area_(area) {}
+
+  SeekDecision decide(const FloorBelief& here, const LampBelief& lamp, Duration elapsed);
+
+ private:
+  static constexpr int kMostVisited = 16;
+
+  void go_on(SeekState state, SeekReason reason);
+  [[nodiscard]] Velocity wanted(const FloorBelief& here, const LampBelief& lamp);
+  Velocity explore(const FloorBelief& here, const LampBelief& lamp);
+  Velocity approach(const FloorBelief& here, const LampBelief& lamp);
+  Velocity locate(const FloorBelief& here, const LampBelief& lamp);
+  Velocity back_off(const FloorBelief& here, const LampBelief& lamp);
+  Velocity shade(const LampBelief& lamp);
+  void choose_next_place(const FloorBelief& here);
+  void choose_way_back(const FloorBelief& here);
+  [[nodiscard]] double way_m(const FloorBelief& here, double heading_rad, double longest_m) const;
+  [[nodiscard]] bool in_area(double x_m, double y_m) const;
+  [[nodiscard]] Velocity towards(const FloorBelief& here, const Place& place) const;
+  [[nodiscard]] Velocity facing(const FloorBelief& here, double heading_rad, bool& done) const;
+  [[nodiscard]] double board_to_lamp_m(const FloorBelief& here) const;
+
+  SeekLampParameters parameters_;
+  std::shared_ptr<const FreeFloor> floor_;
+  BoardPlace board_;
+  KeptArea area_;
+
+  SeekState state_ = SeekState::kWaiting;
+  SeekReason reason_ = SeekReason::kBegun;
+  double in_state_s_ = 0.0;
+  double without_pose_s_ = 0.0;
+  double unreadable_s_ = 0.0;
+  double unknown_s_ = 0.0;  // since the lamp was known
+  double elapsed_s_ = 0.0;
+  FloorBelief start_;
+  Place lamp_;  // where it was last known
+  double lamp_z_m_ = 0.0;
+  Velocity goal_;
+
+  // Exploring.
+  double last_heading_rad_ = 0.0;
+  double turned_rad_ = 0.0;
+  double held_s_ = 0.0;   // standing still for a shadow that is not sure yet
+  double tired_s_ = 0.0;  // of shadows that did not become sure
+  bool on_the_way_ = false;
+  std::array<Place, kMostVisited> visited_{};
+  int visits_ = 0;
+  // Approaching, exploring, backing off.
+  Place next_;
+  // Locating.
+  double middle_rad_ = 0.0;
+  bool to_the_left_ = true;
+  // Backing off.
+  enum class Leg : std::uint8_t { kChoose, kTurnAway, kDrive, kTurnBack } leg_ = Leg::kChoose;
+  double away_rad_ = 0.0;
+  bool far_enough_ = false;
+};
+
+}  // namespace cgsr::behavior
