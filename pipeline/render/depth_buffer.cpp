@@ -42,7 +42,7 @@ void DepthBuffer::draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const
 }
 
 void DepthBuffer::mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c,
-                       const DepthPlane& plane, std::uint8_t* mask) const {
+                       const DepthPlane& plane, std::uint8_t bits, std::uint8_t* mask) const {
   static constexpr auto kBytes = [] {
     std::array<std::uint32_t, 16> bytes{};
     for (std::uint32_t lanes = 0; lanes < 16; ++lanes) {
@@ -52,6 +52,7 @@ void DepthBuffer::mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const
     }
     return bytes;
   }();
+  const std::uint32_t wanted = bits * 0x01010101U;
   const __m128 lanes = _mm_setr_ps(0.0F, 1.0F, 2.0F, 3.0F);
   const __m128 step = _mm_set1_ps(4.0F * plane.du);
   scan(a, b, c, [&](int y, int first, int last) {
@@ -66,11 +67,11 @@ void DepthBuffer::mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const
       if (last - x >= 4) {
         std::uint32_t four = 0;
         std::memcpy(&four, row + x, sizeof four);
-        four |= kBytes[nearer];
+        four |= kBytes[nearer] & wanted;
         std::memcpy(row + x, &four, sizeof four);
       } else {
         for (int k = x; k < last; ++k, nearer >>= 1U) {
-          if ((nearer & 1U) != 0U) row[k] = 255;
+          if ((nearer & 1U) != 0U) row[k] |= bits;
         }
       }
     }

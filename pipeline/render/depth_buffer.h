@@ -33,9 +33,9 @@ class DepthBuffer {
   void draw(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
             std::uint32_t name);
 
-  /// Writes 255 into a mask of width() x height() bytes where a triangle of a plane is nearer than what is there; the buffer stays as it is.
+  /// Sets bits in a mask of width() x height() bytes where a triangle of a plane is nearer than what is there; the buffer stays as it is.
   void mark(const Eigen::Vector2f& a, const Eigen::Vector2f& b, const Eigen::Vector2f& c, const DepthPlane& plane,
-            std::uint8_t* mask) const;
+            std::uint8_t bits, std::uint8_t* mask) const;
 
   /// Where a cell lies in memory, for names().
   [[nodiscard]] std::size_t at(int x, int y) const {

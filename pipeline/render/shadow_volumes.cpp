@@ -34,7 +34,8 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, raster_of(parameters)),
       buffer_(raster_of(parameters).width, raster_of(parameters).height),
-      lamp_(map, parameters) {
+      lamp_(map, parameters),
+      growth_(parameters.width, parameters.height) {
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
   for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
   lamp_in_front_.resize(map.surfaces.size());
@@ -42,7 +43,6 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
   ends_.resize(cells);
   silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
   sides_.resize(cells * static_cast<std::size_t>(parameters.finer * parameters.finer));
-  scratch_.resize(cells);
   masks_.width = parameters.width;
   masks_.height = parameters.height;
   masks_.surface_shaded.resize(cells);
@@ -52,21 +52,41 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
 
 const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
                                       const Eigen::Vector3d& p_WL, int widen_cells) {
+  return look(X_WC, camera, p_WL, widen_cells, nullptr);
+}
+
+const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
+                                      const Eigen::Vector3d& p_WL, const ShadeErrors& errors) {
+  return look(X_WC, camera, p_WL, 0, &errors);
+}
+
+const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
+                                      const Eigen::Vector3d& p_WL, int widen_cells, const ShadeErrors* errors) {
   const bool same_lamp = valid_ && p_WL == p_WL_;
-  if (same_lamp && X_WC.matrix() == X_WC_.matrix() && same(camera, camera_) && widen_cells == widened_) return masks_;
+  const bool same_errors = (errors != nullptr) == uncertain_ &&
+                           (errors == nullptr || (errors->lamp == errors_.lamp && errors->pose == errors_.pose));
+  if (same_lamp && X_WC.matrix() == X_WC_.matrix() && same(camera, camera_) && widen_cells == widened_ && same_errors) {
+    return masks_;
+  }
   if (!same(camera, camera_)) take_camera(camera);
   if (!same_lamp) take_lamp(p_WL.cast<float>());
   valid_ = true;
   X_WC_ = X_WC;
   p_WL_ = p_WL;
   widened_ = widen_cells;
+  uncertain_ = errors != nullptr;
+  if (uncertain_) errors_ = *errors;
+  const Eigen::Matrix3f R_WC = X_WC.linear().cast<float>();
+  axes_ = {R_WC.col(0), R_WC.col(1), R_WC.col(2), X_WC.translation().cast<float>(),
+           static_cast<float>(std::max(camera.fx_px * parameters_.width / camera.width_px,
+                                       camera.fy_px * parameters_.height / camera.height_px))};
   view_ = &views_.of(camera);
   surfaces_.draw(X_WC, *view_, buffer_);
   mark_sides(p_WL.cast<float>());
   shade_surfaces(X_WC);
   if (widen_cells > 0) {
-    widen(masks_.surface_shaded, widen_cells);
-    widen(masks_.possibly_shaded, widen_cells);
+    growth_.grow_square(masks_.surface_shaded.data(), widen_cells);
+    growth_.grow_square(masks_.possibly_shaded.data(), widen_cells);
   }
   return masks_;
 }
@@ -141,8 +161,48 @@ void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_
     return std::max(after, 1.0F);
   };
   const float reach = 1.2F * std::max(leaves_after(a), leaves_after(b));
-  const std::array<Eigen::Vector3f, 4> corners = {a, b, p_WL + reach * (b - p_WL), p_WL + reach * (a - p_WL)};
-  surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, sides_);
+  draw_part({a, b, b - p_WL, a - p_WL}, plane, 1.0F, reach);
+}
+
+/// A side between two multiples of the way to the edge, in as many parts as its uncertainty differs.
+///
+/// \param edge  both ends, and the way to the second and the first from the lamp.
+void ShadowVolumes::draw_part(const std::array<Eigen::Vector3f, 4>& edge, const DepthPlane& plane, float from,
+                              float to) {
+  const std::array<Eigen::Vector3f, 4> corners = {edge[0] + (from - 1.0F) * edge[3], edge[1] + (from - 1.0F) * edge[2],
+                                                  edge[1] + (to - 1.0F) * edge[2], edge[0] + (to - 1.0F) * edge[3]};
+  std::uint8_t bits = 1;
+  if (uncertain_) {
+    const std::array<float, 4> moved = {moved_cells(corners[0], from), moved_cells(corners[1], from),
+                                        moved_cells(corners[2], to), moved_cells(corners[3], to)};
+    const float least = *std::min_element(moved.begin(), moved.end());
+    const float most = *std::max_element(moved.begin(), moved.end());
+    if (most > least + 1.5F && to > 1.15F * from) {
+      const float middle = std::sqrt(from * to);
+      draw_part(edge, plane, from, middle);
+      draw_part(edge, plane, middle, to);
+      return;
+    }
+    bits = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(most)));
+  }
+  surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, bits, sides_);
+}
+
+/// How far the border of a volume may be off in the image at a point that lies so many times as far from the lamp as what throws the shade: the
+/// larger of both directions of the image, in cells of the masks, at the widest what a mask may grow by.
+float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const {
+  const Eigen::Vector3f arm = p_W - axes_.p_WC;
+  const float depth = std::max(arm.dot(axes_.ahead), 0.2F);
+  const auto variance = [&](const Eigen::Vector3f& way) {
+    geometry::Vector6d by_pose;
+    by_pose << way.cast<double>(), arm.cross(way).cast<double>();
+    const Eigen::Vector3d by_lamp = way.cast<double>() * static_cast<double>(times - 1.0F);
+    return by_pose.dot(errors_.pose * by_pose) + by_lamp.dot(errors_.lamp * by_lamp);
+  };
+  const double by_map = static_cast<double>(times) * parameters_.map_sigma_m;
+  const double sigma_m = std::sqrt(std::max(variance(axes_.right), variance(axes_.down)) + by_map * by_map);
+  const double cells = parameters_.sigmas * sigma_m * static_cast<double>(axes_.cells / depth);
+  return static_cast<float>(std::clamp(cells, 0.0, static_cast<double>(parameters_.widest_cells)));
 }
 
 struct ShadowVolumes::Places {
@@ -198,19 +258,28 @@ void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t t
 }
 
 void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
-  const std::uint8_t in_shade = lamp_.look_at(p_WC, world::kNone).hidden ? 255 : 0;
+  const std::uint8_t in_shade = lamp_.look_at(p_WC, world::kNone).hidden ? 1 : 0;
   std::uint8_t* const surface =
       masks_.surface_shaded.data();  // bytes may point anywhere: spare what is behind the vectors a look
   std::uint8_t* const possibly = masks_.possibly_shaded.data();
   const std::uint8_t* const sides = sides_.data();
   const End* const ends = ends_.data();
   const Ray* const rays = rays_.data();
+  // Where a side meets a surface its own uncertainty counts; where an outline ends the shade, the pose's.
+  std::uint8_t by_surface = 1;
+  if (uncertain_) {
+    const Eigen::Vector3f ahead = axes_.p_WC + 3.0F * axes_.ahead;
+    by_surface = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(moved_cells(ahead, 1.0F))));
+  }
   const std::size_t count = ends_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t some = ends[i].triangle == DepthBuffer::kNothing ? 0 : 255;
     surface[i] = ends[i].shaded;
-    possibly[i] = static_cast<std::uint8_t>((ends[i].shaded | in_shade | sides[rays[i].nearest]) & some);
+    const auto marks =
+        static_cast<std::uint8_t>(((ends[i].shaded & by_surface) | in_shade | sides[rays[i].nearest]) & some);
+    possibly[i] = uncertain_ ? marks : static_cast<std::uint8_t>(marks != 0 ? 255 : 0);
   }
+  if (uncertain_) growth_.grow(possibly);
 }
 
 /// The triangle in all four cells around a ray; kMixed: there are several.
@@ -241,29 +310,6 @@ std::uint32_t ShadowVolumes::seen_at(const Ray& ray) const {
   // A cell's own triangle that ends short of the ray: its plane still has to lie before the camera there.
   const bool before = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v) > 0.0F;
   return before ? triangle : DepthBuffer::kNothing;
-}
-
-/// Grows a mask by a square, rows first.
-void ShadowVolumes::widen(std::vector<std::uint8_t>& mask, int cells) {
-  const auto grow = [cells](const std::uint8_t* from, std::uint8_t* to, int count, int stride) {
-    int until = -1;  // covered up to here
-    for (int i = 0; i < count; ++i) {
-      if (from[static_cast<std::ptrdiff_t>(i) * stride] == 0) continue;
-      const int last = std::min(i + cells, count - 1);
-      for (int k = std::max(until + 1, i - cells); k <= last; ++k) to[static_cast<std::ptrdiff_t>(k) * stride] = 255;
-      until = last;
-    }
-  };
-  std::fill(scratch_.begin(), scratch_.end(), std::uint8_t{0});
-  for (int y = 0; y < masks_.height; ++y) {
-    const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(masks_.width);
-    grow(&mask[row], &scratch_[row], masks_.width, 1);
-  }
-  std::fill(mask.begin(), mask.end(), std::uint8_t{0});
-  for (int x = 0; x < masks_.width; ++x) {
-    const auto column = static_cast<std::size_t>(x);
-    grow(&scratch_[column], &mask[column], masks_.height, masks_.width);
-  }
 }
 
 }  // namespace cgsr::render

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/render/lamp_view.h"
+#include "pipeline/render/mask_growth.h"
 #include "pipeline/render/shade_parameters.h"
 #include "pipeline/render/surface_raster.h"
 #include "pipeline/render/view.h"
@@ -18,6 +19,12 @@ struct ShadeMasks {
   int height = 0;
   std::vector<std::uint8_t> surface_shaded;   ///< the first surface of the map along the ray of the cell's middle is.
   std::vector<std::uint8_t> possibly_shaded;  ///< some point between the camera and that surface is. Holds the first.
+};
+
+/// What pose and lamp may be off by.
+struct ShadeErrors {
+  Eigen::Matrix3d lamp = Eigen::Matrix3d::Zero();        ///< covariance of p_WL, m^2.
+  geometry::Matrix6d pose = geometry::Matrix6d::Zero();  ///< of the step from X_WC (geometry::moved), m and rad.
 };
 
 /// Shaded regions of the map (5.2) by shadow volumes, clipped by the map's depth.
@@ -37,6 +44,10 @@ class ShadowVolumes {
   ///        move a shadow's border by.  \return the masks, until the next call. Allocates nothing.
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          int widen_cells = 0);
+
+  /// The same, with the second mask widened by what the errors of lamp, pose and map may move its borders by; the first stays as it is.
+  const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
+                         const ShadeErrors& errors);
 
   /// Edges that bound volumes, for the last lamp.
   [[nodiscard]] std::size_t silhouettes() const { return silhouettes_.size(); }
@@ -62,17 +73,28 @@ class ShadowVolumes {
     }
   };
   struct Places;
+  /// The image's axes and the view's, in W.
+  struct Axes {
+    Eigen::Vector3f right = Eigen::Vector3f::UnitX();
+    Eigen::Vector3f down = Eigen::Vector3f::UnitY();
+    Eigen::Vector3f ahead = Eigen::Vector3f::UnitZ();
+    Eigen::Vector3f p_WC = Eigen::Vector3f::Zero();
+    float cells = 0.0F;  ///< of the masks, per tangent.
+  };
 
+  const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
+                         int widen_cells, const ShadeErrors* errors);
   void take_camera(const geometry::Camera& camera);
   void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
+  void draw_part(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float from, float to);
+  [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
   void shade_surfaces(const geometry::Pose& X_WC);
   void follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const;
   void write_masks(const Eigen::Vector3f& p_WC);
   [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
-  void widen(std::vector<std::uint8_t>& mask, int cells);
 
   const world::Map& map_;
   ShadeParameters parameters_;
@@ -86,14 +108,18 @@ class ShadowVolumes {
   std::vector<End> ends_;
   std::vector<std::uint8_t> lamp_in_front_;  ///< [surface]: on the side that its normal points to.
   std::vector<std::uint32_t> silhouettes_;
-  std::vector<std::uint8_t> sides_;  ///< of the raster: a volume's side stands before the surface.
-  std::vector<std::uint8_t> scratch_;
+  std::vector<std::uint8_t>
+      sides_;  ///< of the raster: a volume's side stands before the surface; the bit says how uncertain its place is.
+  MaskGrowth growth_;
   ShadeMasks masks_;
   bool valid_ = false;
   geometry::Pose X_WC_ = geometry::Pose::Identity();
   geometry::Camera camera_;
   Eigen::Vector3d p_WL_ = Eigen::Vector3d::Zero();
   int widened_ = 0;
+  bool uncertain_ = false;
+  ShadeErrors errors_;
+  Axes axes_;
 };
 
 }  // namespace cgsr::render

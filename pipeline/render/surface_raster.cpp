@@ -100,7 +100,7 @@ bool SurfaceRaster::plane_in_view(const Eigen::Vector3f& normal, float offset_m,
 }
 
 void SurfaceRaster::mark(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float lift,
-                         const DepthBuffer& buffer, std::vector<std::uint8_t>& mask) const {
+                         const DepthBuffer& buffer, std::uint8_t bits, std::vector<std::uint8_t>& mask) const {
   const auto near = static_cast<float>(parameters_.near_m);
   std::array<Eigen::Vector3f, 4> p;
   for (std::size_t i = 0; i < 4; ++i) p[i] = to_cells_ * (corners[i] - p_WC_);
@@ -115,7 +115,7 @@ void SurfaceRaster::mark(const std::array<Eigen::Vector3f, 4>& corners, const De
     kept[count++] = (a + t * (b - a)).head<2>() / near;
   }
   const DepthPlane lowered{plane.du / lift, plane.dv / lift, plane.at_origin / lift};
-  for (std::size_t i = 2; i < count; ++i) buffer.mark(kept[0], kept[i - 1], kept[i], lowered, mask.data());
+  for (std::size_t i = 2; i < count; ++i) buffer.mark(kept[0], kept[i - 1], kept[i], lowered, bits, mask.data());
 }
 
 /// Cuts a triangle at the near plane (Sutherland and Hodgman): three or four corners are left.

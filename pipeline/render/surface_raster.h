@@ -36,11 +36,11 @@ class SurfaceRaster {
   /// Whether a triangle that was drawn covers a place of the raster, exactly; one that is cut by the near plane is taken to.
   [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
 
-  /// Marks with 255 where a convex part of a plane stands before what a buffer of this view holds.
+  /// Sets bits where a convex part of a plane stands before what a buffer of this view holds.
   ///
   /// \param corners  in W, metres.  \param lift  1/Z of the plane has to be so many times that of the buffer.  \param mask  a byte a cell.
   void mark(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float lift,
-            const DepthBuffer& buffer, std::vector<std::uint8_t>& mask) const;
+            const DepthBuffer& buffer, std::uint8_t bits, std::vector<std::uint8_t>& mask) const;
 
   /// The plane n . p = offset of W in this view. \return false: it passes through the camera and is not seen.
   bool plane_in_view(const Eigen::Vector3f& normal, float offset_m, DepthPlane& plane) const;

@@ -114,6 +114,72 @@ TEST(ShadowVolumes, WhatDidNotMoveIsKeptAndWhatDidIsDrawnAnew) {
   EXPECT_EQ(volumes.look(X_WC, Camera(), {0.0, 0.0, 2.75}).surface_shaded, first);
 }
 
+ShadeErrors errors_of(double lamp_m, double place_m, double turn_rad) {
+  ShadeErrors errors;
+  errors.lamp = lamp_m * lamp_m * Eigen::Matrix3d::Identity();
+  errors.pose.topLeftCorner<3, 3>() = place_m * place_m * Eigen::Matrix3d::Identity();
+  errors.pose.bottomRightCorner<3, 3>() = turn_rad * turn_rad * Eigen::Matrix3d::Identity();
+  return errors;
+}
+
+TEST(ShadowVolumes, WhatIsUncertainMayBeShadedAndWhatIsCertainIsKept) {
+  const Map map = table_over_floor();
+  const Pose X_WC = looking_from({-4.0, 0.0, 1.2}, {0.0, 0.0, 0.3});
+  const Vector3d p_WL(0.3, 0.2, 2.75);
+  ShadeParameters parameters;
+  parameters.map_sigma_m = 0.0;
+  ShadowVolumes volumes(map, parameters);
+  const ShadeMasks certain = volumes.look(X_WC, Camera(), p_WL);
+  EXPECT_EQ(volumes.look(X_WC, Camera(), p_WL, ShadeErrors{}).possibly_shaded, certain.possibly_shaded);
+  std::size_t before = count(certain.possibly_shaded);
+  for (const ShadeErrors& errors : {errors_of(0.1, 0.0, 0.0), errors_of(0.1, 0.03, 0.0), errors_of(0.1, 0.03, 0.01)}) {
+    const ShadeMasks& masks = volumes.look(X_WC, Camera(), p_WL, errors);
+    EXPECT_EQ(masks.surface_shaded, certain.surface_shaded);
+    for (std::size_t i = 0; i < masks.possibly_shaded.size(); ++i) {
+      ASSERT_GE(masks.possibly_shaded[i], certain.possibly_shaded[i]);
+    }
+    EXPECT_GT(count(masks.possibly_shaded), before);
+    before = count(masks.possibly_shaded);
+  }
+}
+
+TEST(ShadowVolumesProperty, TheWidenedMaskHoldsWhatLampAndPoseDoNotKnow) {
+  std::mt19937 random(7);
+  const auto normal = [&] {
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) sum += random() / 4294967296.0;
+    return sum;
+  };
+  const Map map = table_over_floor();
+  const Pose X_WC = looking_from({-3.5, 0.5, 1.2}, {0.0, 0.0, 0.3});
+  const Vector3d p_WL(0.3, 0.2, 2.75);
+  ShadowVolumes volumes(map, {});
+  const auto truth = volumes.look(X_WC, Camera(), p_WL).possibly_shaded;
+  const ShadeErrors errors = errors_of(0.04, 0.015, 0.003);
+  double missed = 0.0;
+  double missed_unwidened = 0.0;
+  double area = 0.0;
+  constexpr int kTrials = 60;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    geometry::Vector6d step;
+    for (Eigen::Index i = 0; i < 6; ++i) step[i] = normal() * std::sqrt(errors.pose(i, i));
+    const Vector3d off = Vector3d(normal(), normal(), normal()) * 0.04;
+    const Pose believed = geometry::moved(X_WC, step);
+    const auto misses = [&](const std::vector<std::uint8_t>& mask) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < mask.size(); ++i) sum += truth[i] > mask[i] ? 1.0 : 0.0;
+      return sum / static_cast<double>(count(truth)) / kTrials;
+    };
+    missed_unwidened += misses(volumes.look(believed, Camera(), p_WL + off).possibly_shaded);
+    const auto& mask = volumes.look(believed, Camera(), p_WL + off, errors).possibly_shaded;
+    missed += misses(mask);
+    area += static_cast<double>(count(mask)) / static_cast<double>(count(truth)) / kTrials;
+  }
+  EXPECT_GT(missed_unwidened, 0.02);
+  EXPECT_LT(missed, 0.002);
+  EXPECT_LT(area, 1.6);
+}
+
 // By the definition, at random: a ray from where each cell looks to the lamp, past every triangle.
 TEST(ShadowVolumesProperty, SurfacesAreShadedWhereARayToTheLampIsStopped) {
   std::mt19937 random(5);
