@@ -28,7 +28,11 @@ std::string_view name_of(ObservationStatus status) {
 ProbeObserver::ProbeObserver(const Board& board, const ProbesParameters& parameters, double lamp_height_m)
     : board_(board), parameters_(parameters) {
   finders_.reserve(static_cast<std::size_t>(board.probes));
-  for (int i = 0; i < board.probes; ++i) finders_.emplace_back(board, i, parameters.shadow, lamp_height_m);
+  strips_.reserve(static_cast<std::size_t>(board.probes));
+  for (int i = 0; i < board.probes; ++i) {
+    finders_.emplace_back(board, i, parameters.shadow, lamp_height_m);
+    strips_.emplace_back(board, i, parameters.shadow, lamp_height_m);
+  }
 }
 
 ProbeObservation ProbeObserver::observe(const ImageView& image) {
@@ -65,17 +69,31 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
   for (const auto& found : observation.probe) {
     for (int k = 0; k < found.count; ++k) whole = whole || found.shadow[static_cast<std::size_t>(k)].lines == 2;
   }
-  for (std::size_t i = 0; i < finders_.size() && !whole; ++i) {
-    if ((observation.missing & (1 << i)) != 0) continue;
-    const auto strip = finders_[i].find_strip(luma, observation.registration.X_BC);
-    if (strip.count == 0) continue;
-    shadows += strip.count;
-    observation.probe[i] = strip;
-  }
+  if (!whole) shadows += look_beside_cones(luma, observation);
   observation.status = shadows > 0                  ? ObservationStatus::kSeen
                        : saturated > kMostSaturated ? ObservationStatus::kSaturated
                                                     : ObservationStatus::kNoShadow;
   return observation;
+}
+
+// A strip alone is easily something else: only where no probe shows a whole shadow.
+int ProbeObserver::look_beside_cones(const LumaView& luma, ProbeObservation& observation) {
+  const BoardView view(board_.camera, observation.registration.X_BC);
+  std::array<Outline, kMostProbes> behind;
+  for (std::size_t i = 0; i < strips_.size(); ++i) {
+    const Probe& probe = board_.probe[i];
+    behind[i] = outline_of(probe.foot_B, probe.radius_m, cast(view.p_BC(), probe.p_BA));
+  }
+  int more = 0;
+  for (std::size_t i = 0; i < strips_.size(); ++i) {
+    if ((observation.missing & (1 << i)) != 0) continue;
+    ProbeShadow shadow;
+    if (!strips_[i].find(luma, view, behind, shadow)) continue;
+    more += 1 - observation.probe[i].count;
+    observation.probe[i].count = 1;
+    observation.probe[i].shadow[0] = shadow;
+  }
+  return more;
 }
 
 }  // namespace cgsr::illumination

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pipeline/illumination/board.h"
+#include "pipeline/illumination/cone_strip.h"
 #include "pipeline/illumination/registration.h"
 #include "pipeline/illumination/shadow_lines.h"
 #include "platform/image_view.h"
@@ -62,9 +63,12 @@ class ProbeObserver {
   void restart() { has_last_ = false; }
 
  private:
+  int look_beside_cones(const LumaView& luma, ProbeObservation& observation);
+
   Board board_;
   ProbesParameters parameters_;
   std::vector<ShadowFinder> finders_;
+  std::vector<ConeStrip> strips_;
   geometry::Pose last_X_BC_ = geometry::Pose::Identity();
   bool has_last_ = false;
 };

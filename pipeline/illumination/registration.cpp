@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
@@ -18,20 +20,31 @@ using geometry::Vector6d;
 
 constexpr int kMostPoints = 320;
 constexpr int kMostReach_px = 16;
-constexpr double kShare = 0.5;      // of what was measured wrongly, what one line does not share with its neighbours
-constexpr double kNoise_px = 0.15;  // of one point, out of pixel noise
-// What a round of looking for edges takes for far off: the first must bring edges in from the mount's error, clutter and all.
-constexpr std::array kSoft_px{6.0, 2.5, 0.8, 0.8};
-constexpr int kRounds = 4;
-constexpr int kSteps = 2;  // of Gauss-Newton on what one round found
+constexpr double kShare = 0.5;        // of what was measured wrongly, what one line does not share with its neighbours
+constexpr double kNoise_px = 0.15;    // of one point, out of pixel noise
+constexpr double kBelieved = 2.5;     // standard deviations by which a cone may stand elsewhere than measured
+constexpr int kSteps = 2;             // of Gauss-Newton on what one round found
+constexpr double kOtherStarts = 1.5;  // standard deviations of the mount
+constexpr double kMostRms_px = 1.2;
+constexpr double kGoodRms_px = 0.6;
+constexpr double kLeastAgreeing = 0.6;  // of the points that were found
+
+// One round of looking for edges. The first must bring them in from the mount's error, clutter and all, and needs no accuracy for it.
+struct Round {
+  double soft_px;  // what it takes for far off
+  double sparser;  // than the parameters' spacing
+};
+constexpr std::array kRound{Round{6.0, 2.5}, Round{2.5, 2.0}, Round{0.8, 1.0}, Round{0.8, 1.0}};
+constexpr int kRounds = static_cast<int>(kRound.size());
 
 // A place on an expected line, and where its edge was found.
 struct EdgePoint {
-  Vector3d p_B;
   Vector2d normal;   // in the image, unit
   double offset_px;  // of the edge along the normal, from where it was expected
-  Vector2d expected;
+  Vector6d by_pose;  // of that offset, by geometry::moved(X_BC, step)
   double sigma2_px;  // what it tells, its line's common error included
+  double soft2_px;   // what is far off, squared
+  double place_px;   // the calibration's own error, as it is seen here
   int feature;       // board 0, cones 1 and 2
 };
 
@@ -74,8 +87,15 @@ bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal
 class Collector {
  public:
   Collector(const Board& board, const RegistrationParameters& parameters, const LumaView& image, const BoardView& view,
-            int reach, std::array<EdgePoint, kMostPoints>& points)
-      : board_(board), parameters_(parameters), image_(image), view_(view), reach_(reach), points_(points) {}
+            int reach, const Round& round, std::array<EdgePoint, kMostPoints>& points)
+      : board_(board), image_(image), view_(view), reach_(reach), round_(round), points_(points) {
+    spacing_px_ = parameters.spacing_px * round.sparser;
+    least_contrast_ = parameters.least_contrast;
+    for (int i = 0; i < board_.probes; ++i) {
+      const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
+      behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
+    }
+  }
 
   int collect() {
     const double x = board_.depth_m / 2;
@@ -84,7 +104,7 @@ class Collector {
     segment({-x, -y, 0.0}, {-x, y, 0.0}, 0);
     segment({-x, y, 0.0}, {x, y, 0.0}, 0);
     segment({-x, -y, 0.0}, {x, -y, 0.0}, 0);
-    for (int i = 0; i < board_.probes; ++i) cone(board_.probe[static_cast<std::size_t>(i)], i + 1);
+    for (int i = 0; i < board_.probes; ++i) cone(i);
     return count_;
   }
 
@@ -93,8 +113,7 @@ class Collector {
   [[nodiscard]] bool hidden(const Vector2d& p_B) const {
     for (int i = 0; i < board_.probes; ++i) {
       const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
-      const Outline outline = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
-      if (within(outline, probe.foot_B, probe.radius_m, p_B, 0.008)) return true;
+      if (within(behind_[static_cast<std::size_t>(i)], probe.foot_B, probe.radius_m, p_B, 0.008)) return true;
     }
     return false;
   }
@@ -105,7 +124,7 @@ class Collector {
     const auto middle = view_.derivative(from + 0.5 * d);
     if (!middle.in_front) return;
     const double length_px = (middle.by_point * d).norm();
-    const int steps = std::clamp(static_cast<int>(length_px / parameters_.spacing_px), 2, 120);
+    const int steps = std::clamp(static_cast<int>(length_px / spacing_px_), 2, 120);
     const int begin = count_;
     for (int i = 0; i < steps; ++i) {
       const Vector3d p_B = from + (i + 0.5) / steps * d;
@@ -115,9 +134,11 @@ class Collector {
     weigh(begin);
   }
 
-  void cone(const Probe& probe, int feature) {
-    const Outline outline = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
+  void cone(int index) {
+    const Probe& probe = board_.probe[static_cast<std::size_t>(index)];
+    const Outline& outline = behind_[static_cast<std::size_t>(index)];
     if (!outline.valid) return;
+    const int feature = index + 1;
     for (const Vector2d& touch : outline.touch) {
       const Vector3d low(touch.x(), touch.y(), 0.0);
       const Vector3d up = probe.p_BA - low;
@@ -139,21 +160,18 @@ class Collector {
 
   void add(const Vector3d& p_B, const Vector3d& along, int feature) {
     if (count_ >= kMostPoints) return;
-    const auto pixel = view_.pixel(p_B);
-    if (!pixel.in_front || !image_.holds(pixel.at.x(), pixel.at.y(), reach_ + 1.0)) return;
     const auto d = view_.derivative(p_B);
+    if (!d.in_front || !image_.holds(d.at.x(), d.at.y(), reach_ + 1.0)) return;
     const Vector2d tangent = d.by_point * along;
     const double length = tangent.norm();
     if (length < 1e-9) return;
     EdgePoint& point = points_[static_cast<std::size_t>(count_)];
     point.normal = Vector2d(-tangent.y(), tangent.x()) / length;
-    if (!find_edge(image_, d.at, point.normal, reach_, parameters_.least_contrast, point.offset_px)) return;
-    point.p_B = p_B;
-    point.expected = d.at;
+    if (!find_edge(image_, d.at, point.normal, reach_, least_contrast_, point.offset_px)) return;
+    point.by_pose = (point.normal.transpose() * view_.by_pose(d, p_B)).transpose();
     point.feature = feature;
     // How many pixels the calibration's own error is here.
-    const double px_per_m = d.by_point.norm() / std::numbers::sqrt2;
-    point.sigma2_px = kShare * board_.place_sigma_m * px_per_m;
+    point.place_px = board_.place_sigma_m * d.by_point.norm() / std::numbers::sqrt2;
     ++count_;
   }
 
@@ -162,16 +180,22 @@ class Collector {
     const int number = count_ - begin;
     for (int i = begin; i < count_; ++i) {
       EdgePoint& point = points_[static_cast<std::size_t>(i)];
-      point.sigma2_px = kNoise_px * kNoise_px + number * point.sigma2_px * point.sigma2_px;
+      const double own = kShare * point.place_px;
+      point.sigma2_px = kNoise_px * kNoise_px + number * own * own;
+      const double far = kBelieved * point.place_px;
+      point.soft2_px = round_.soft_px * round_.soft_px + far * far;
     }
   }
 
   const Board& board_;
-  const RegistrationParameters& parameters_;
   const LumaView& image_;
   const BoardView& view_;
   int reach_;
+  const Round& round_;
   std::array<EdgePoint, kMostPoints>& points_;
+  std::array<Outline, kMostProbes> behind_;  // what the cones hide from the camera
+  double spacing_px_ = 0.0;
+  double least_contrast_ = 0.0;
   int count_ = 0;
 };
 
@@ -183,17 +207,14 @@ void accumulate(Matrix6d& H, Vector6d& g, const Vector6d& j, double residual, do
   }
 }
 
-}  // namespace
-
-Registration register_board(const Board& board, const RegistrationParameters& parameters, const LumaView& image,
-                            const geometry::Pose& start, bool start_is_good) {
+Registration attempt(const Board& board, const RegistrationParameters& parameters, const LumaView& image,
+                     const geometry::Pose& start, int first) {
   Registration result;
-  result.X_BC = start_is_good ? start : board.X_BC;
+  result.X_BC = start;
   std::array<EdgePoint, kMostPoints> points;
   Vector6d prior;
   prior.head<3>().setConstant(1.0 / (board.mount_sigma_m * board.mount_sigma_m));
   prior.tail<3>().setConstant(1.0 / (board.mount_sigma_rad * board.mount_sigma_rad));
-  const int first = start_is_good ? 2 : 0;
   for (int round = first; round < kRounds; ++round) {
     const double reach_px = round == 0   ? parameters.first_reach_px
                             : round == 1 ? 0.5 * (parameters.first_reach_px + parameters.next_reach_px)
@@ -201,9 +222,9 @@ Registration register_board(const Board& board, const RegistrationParameters& pa
     const int reach = std::min(kMostReach_px, static_cast<int>(std::ceil(reach_px)));
     const geometry::Pose X_round = result.X_BC;
     const BoardView view(board.camera, X_round);
-    const int count = Collector(board, parameters, image, view, reach, points).collect();
-    if (count < parameters.least_points) return result;
-    const double soft_px = kSoft_px[static_cast<std::size_t>(round)];
+    const Round& how = kRound[static_cast<std::size_t>(round)];
+    const int count = Collector(board, parameters, image, view, reach, how, points).collect();
+    if (count * how.sparser < parameters.least_points) return result;
     Vector6d total = Vector6d::Zero();
     for (int step = 0; step < kSteps; ++step) {
       Matrix6d H = prior.asDiagonal();
@@ -212,13 +233,10 @@ Registration register_board(const Board& board, const RegistrationParameters& pa
       std::array<int, 3> agree{};
       for (int i = 0; i < count; ++i) {
         const EdgePoint& point = points[static_cast<std::size_t>(i)];
-        const auto d = view.derivative(point.p_B);
-        const Vector6d j = (point.normal.transpose() * view.by_pose(d, point.p_B)).transpose();
-        const double residual = point.offset_px - j.dot(total);
-        const double relative = residual / soft_px;
-        const double robust = 1.0 / (1.0 + relative * relative);
-        accumulate(H, g, j, residual, robust * robust / point.sigma2_px);
-        if (std::abs(residual) < 1.5 * soft_px) {
+        const double residual = point.offset_px - point.by_pose.dot(total);
+        const double robust = point.soft2_px / (point.soft2_px + residual * residual);
+        accumulate(H, g, point.by_pose, residual, robust * robust / point.sigma2_px);
+        if (residual * residual < 2.25 * point.soft2_px) {
           ++agree[static_cast<std::size_t>(point.feature)];
           squares += residual * residual;
         }
@@ -232,11 +250,47 @@ Registration register_board(const Board& board, const RegistrationParameters& pa
       result.points = agree[0] + agree[1] + agree[2];
       result.cones = (agree[1] >= 8 ? 1 : 0) | (agree[2] >= 8 ? 2 : 0);
       result.rms_px = result.points > 0 ? std::sqrt(squares / result.points) : 0.0;
+      result.good = result.points >= parameters.least_points && result.points >= kLeastAgreeing * count &&
+                    result.cones != 0 && result.rms_px < kMostRms_px && round + 1 == kRounds;
     }
     result.X_BC = geometry::moved(X_round, total);
   }
-  result.good = result.points >= parameters.least_points && result.cones != 0;
   return result;
+}
+
+// Does it explain more of board and cones?
+bool better(const Registration& a, const Registration& b) {
+  if (a.good != b.good) return a.good;
+  if (std::popcount(static_cast<unsigned>(a.cones)) != std::popcount(static_cast<unsigned>(b.cones)))
+    return std::popcount(static_cast<unsigned>(a.cones)) > std::popcount(static_cast<unsigned>(b.cones));
+  return a.points > b.points;
+}
+
+}  // namespace
+
+Registration register_board(const Board& board, const RegistrationParameters& parameters, const LumaView& image,
+                            const geometry::Pose& start, bool start_is_good) {
+  if (start_is_good) return attempt(board, parameters, image, start, 2);
+  Registration best = attempt(board, parameters, image, board.X_BC, 0);
+  const int all_cones = (1 << board.probes) - 1;
+  if (best.good && best.cones == all_cones && best.rms_px < kGoodRms_px) return best;
+  // A line beside the one that was meant took it: once more from all around, where the mount's own error may have brought the camera.
+  for (const auto& [about_x, about_y] : {std::pair{1.0, 0.0},
+                                         {-1.0, 0.0},
+                                         {0.0, 1.0},
+                                         {0.0, -1.0},
+                                         {0.9, 0.9},
+                                         {-0.9, 0.9},
+                                         {0.9, -0.9},
+                                         {-0.9, -0.9}}) {
+    const Vector3d turn_C = kOtherStarts * board.mount_sigma_rad * Vector3d(about_x, about_y, 0.0);
+    Vector6d step = Vector6d::Zero();
+    step.tail<3>() = board.X_BC.linear() * turn_C;
+    const Registration other = attempt(board, parameters, image, geometry::moved(board.X_BC, step), 1);
+    if (better(other, best)) best = other;
+    if (best.good && best.cones == all_cones && best.rms_px < kGoodRms_px) break;
+  }
+  return best;
 }
 
 }  // namespace cgsr::illumination

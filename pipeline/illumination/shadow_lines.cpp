@@ -23,18 +23,17 @@ constexpr double kStartOfLine_m = 0.003;  // nearer to the base its own contact 
 constexpr double kEndOfLine = 0.9;        // of the way to the tip's shadow, which is soft all over
 constexpr int kAcross = 9;                // samples across a line
 constexpr int kLeastAcross = 5;           // of them to be seen
-constexpr int kLeastSamples = 24;         // for a fit at all
+constexpr int kLeastSamples = 20;         // for a fit at all
 constexpr int kMostPlaces = 14;           // along a line
 constexpr double kCorrelation = 1.6;      // samples read between pixels are not independent
 constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge explains
-constexpr int kStripSteps = 24;           // beside a cone's outline
-constexpr double kStripStep_m = 0.0025;
-constexpr double kStripSigma_m = 0.002;  // of the tip's shadow by where the strip ends
-constexpr double kMostToTip_m = 0.02;    // along a single line, for its end to be looked at
-constexpr double kTipFound_m = 0.0025;   // then the tip's shadow must be known to this
-constexpr double kEndWithTip = 1.1;      // the tip is most of what is seen
-constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
+constexpr double kLeastKnown_m = 0.004;   // of the tip beforehand, by where a single line ends
+constexpr double kMostToTip_m = 0.02;     // along a single line, for its end to be looked at
+constexpr double kTipFound_m = 0.0025;    // then the tip's shadow must be known to this
+constexpr double kEndWithTip = 1.1;       // the tip is most of what is seen
+constexpr double kLeastOfFirst = 0.35;    // a second lamp's shadow, of the first one's contrast
 constexpr double kRadiusSigma_m = 0.0003;
+constexpr double kLeastFilled = 0.75;  // of the places inside, dark
 
 // The unknowns of the fit.
 enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLevel, kSlopeX, kSlopeY };
@@ -82,6 +81,9 @@ double ShadowFinder::penumbra_sigma(double along) const {
 
 float ShadowFinder::hidden_share(const Vector2d& from_foot, const Outline& outline, double blur_m) const {
   if (!outline.valid) return 0.0F;
+  // Both lines' inner sides overlap behind the base as well: only from the points on where they begin.
+  const Vector2d backward = outline.inward[0] + outline.inward[1];
+  if (from_foot.dot(backward) > -0.5 * probe_.radius_m * backward.squaredNorm()) return 0.0F;
   float share = -1.0F;
   for (std::size_t side = 0; side < 2; ++side) {
     const double d = from_foot.dot(outline.inward[side]) + probe_.radius_m;
@@ -208,61 +210,6 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
     }
   }
   return best;
-}
-
-// Most of a shadow that falls away from the camera is hidden by its own cone; what is left is a dark strip beside the cone's outline, too narrow
-// for the rings.
-ShadowFinder::Candidate ShadowFinder::beside_cone(const LumaView& image, const BoardView& view,
-                                                  std::size_t side) const {
-  Candidate candidate;
-  const Outline& outline = behind_[static_cast<std::size_t>(index_)];
-  if (!outline.valid) return candidate;
-  const Vector2d tip = cast(view.p_BC(), probe_.p_BA);
-  const Vector2d along = (tip - outline.touch[side]).normalized();
-  const Vector2d outward = -outline.inward[side];
-  const auto value_at = [&](double tau, double out, float& value) {
-    const Vector2d p_B = outline.touch[side] + tau * along + out * outward;
-    const auto pixel = view.pixel({p_B.x(), p_B.y(), 0.0});
-    if (!seen(p_B) || !pixel.in_front || !image.holds(pixel.at.x(), pixel.at.y(), 1.0)) return false;
-    value = image.at(pixel.at.x(), pixel.at.y());
-    return true;
-  };
-  int dark_steps = 0;
-  double darkest = 0.0;
-  double end_m = 0.0;
-  double level = 0.0;
-  int gap = 0;
-  for (int step = 0; step < kStripSteps && (gap < 3 || dark_steps < 2); ++step) {
-    const double tau = (step + 1.5) * kStripStep_m;
-    float near = 0.0F;
-    float next = 0.0F;
-    float far = 0.0F;
-    float further = 0.0F;
-    if (!value_at(tau, kConeMargin_m + 0.0004, near) || !value_at(tau, kConeMargin_m + 0.0012, next) ||
-        !value_at(tau, 0.018, far) || !value_at(tau, 0.024, further)) {
-      ++gap;
-      continue;
-    }
-    const double beside = 0.5 * static_cast<double>(far + further);
-    const double darker = beside - 0.5 * static_cast<double>(near + next);
-    if (darker < std::max(4.0, 2.0 * parameters_.least_share * beside)) {
-      ++gap;
-      continue;
-    }
-    gap = 0;
-    ++dark_steps;
-    darkest = std::max(darkest, darker);
-    level = beside;
-    end_m = tau;
-  }
-  if (dark_steps < 2 || gap < 2) return candidate;  // none, or one without an end
-  candidate.ray = 0;
-  candidate.known_m = kStripSigma_m;
-  candidate.score = kLeastScore;
-  candidate.contrast = 1.2 * darkest;
-  candidate.level = level;
-  candidate.tip_shadow = outline.touch[side] + (end_m + kStripStep_m) * along + 0.002 * outward;
-  return candidate;
 }
 
 int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, const Vector2d& tip_shadow,
@@ -515,10 +462,26 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   again.tip_shadow = shadow.p_BS;
   again.contrast = shadow.contrast;
   again.level = level_;
-  again.known_m = std::max(2.0 * kStripSigma_m, along_m);
+  again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
   if (!fit(image, view, again, with_tip)) return;
   if (with_tip.covariance.trace() < kTipFound_m * kTipFound_m) shadow = with_tip;
+}
+
+// Is it dark between the lines too, from the base on? A spot beside a cone has edges that fit, but no such inside.
+bool ShadowFinder::is_filled(const ProbeShadow& shadow) const {
+  const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, shadow.p_BS);
+  int asked = 0;
+  int dark = 0;
+  for (std::size_t r = 0; r < kRays; ++r) {
+    for (std::size_t k = 0; k < kRings; ++k) {
+      if (valid_[r][k] == 0.0F) continue;
+      if (hidden_share(grid_[r * kRings + k], outline, 0.0015) < 0.9F) continue;
+      ++asked;
+      if (static_cast<double>(value_[r][k]) < -0.5 * shadow.contrast) ++dark;
+    }
+  }
+  return dark >= kLeastFilled * asked;
 }
 
 void ShadowFinder::take_away(const ProbeShadow& shadow) {
@@ -567,7 +530,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;
     ProbeShadow shadow;
-    if (!fit(image, view, candidate, shadow)) continue;
+    if (!fit(image, view, candidate, shadow) || !is_filled(shadow)) continue;
     bool known = false;
     for (int i = 0; i < found.count; ++i) {
       const ProbeShadow& other = found.shadow[static_cast<std::size_t>(i)];
@@ -577,19 +540,6 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     if (shadow.lines == 1) look_for_tip(image, view, shadow);
     found.shadow[static_cast<std::size_t>(found.count++)] = shadow;
     take_away(shadow);
-  }
-  return found;
-}
-
-ShadowFinder::Found ShadowFinder::find_strip(const LumaView& image, const geometry::Pose& X_BC) {
-  Found found;
-  const BoardView view(board_.camera, X_BC);
-  for (std::size_t side = 0; side < 2 && found.count == 0; ++side) {
-    const Candidate candidate = beside_cone(image, view, side);
-    ProbeShadow shadow;
-    if (candidate.ray >= 0 && fit(image, view, candidate, shadow)) {
-      found.shadow[static_cast<std::size_t>(found.count++)] = shadow;
-    }
   }
   return found;
 }

@@ -66,10 +66,6 @@ class ShadowFinder {
   /// \param saturation  the brightest level that the image can hold.
   Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
 
-  /// The shadow that lies behind its own cone but for a strip beside the cone's outline. After find(), on the same image, when no probe has shown a
-  /// whole shadow: a strip alone is easily something else.
-  Found find_strip(const LumaView& image, const geometry::Pose& X_BC);
-
   /// Of the places around the probe that the last image showed, the share that has no level left.
   [[nodiscard]] double share_saturated() const { return saturated_; }
 
@@ -88,8 +84,7 @@ class ShadowFinder {
     double score = 0.0;
     double contrast = 0.0;
     double level = 0.0;
-    double known_m =
-        0.0;  // how well the tip is known beforehand, from where a strip ends; 0: not, and the tip itself is not looked at
+    double known_m = 0.0;  // how well the tip is known beforehand; 0: not, and the tip itself is not looked at
   };
   struct Sample {
     Eigen::Vector2f from_foot;
@@ -106,12 +101,12 @@ class ShadowFinder {
   void take_plane_away();
   void look_around(const LumaView& image, const BoardView& view);
   [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count) const;
-  [[nodiscard]] Candidate beside_cone(const LumaView& image, const BoardView& view, std::size_t side) const;
   [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate, ProbeShadow& shadow);
   int choose_samples(const LumaView& image, const BoardView& view, const Eigen::Vector2d& tip_shadow, double slack_m,
                      bool with_tip);
   [[nodiscard]] bool seen(const Eigen::Vector2d& p_B) const;
   void look_for_tip(const LumaView& image, const BoardView& view, ProbeShadow& shadow);
+  [[nodiscard]] bool is_filled(const ProbeShadow& shadow) const;
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
   [[nodiscard]] double penumbra_sigma(double along) const;

@@ -47,6 +47,28 @@ TEST(ProbeObservation, FindsTheShadowsOfDrawnTips) {
   }
 }
 
+// Light from behind the camera: of a tip's shadow a pixel or two stand out beside the cone.
+TEST(ProbeObservation, FindsAShadowThatItsOwnConeAllButHides) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  const Vector3d p_BL(-0.656, 0.27, 1.85);  // 20 degrees from the vertical
+  Drawing drawing;
+  constexpr int kParts = 9;  // of a ball-shaped lamp of 5 cm radius: its shadow is soft
+  drawing.shadow_level = 30.0 / kParts;
+  for (int i = 0; i < kParts; ++i) {
+    const double radius = 0.05 * std::sqrt((i + 0.5) / kParts);
+    const double angle = 2.4 * i;
+    drawing.lamps_B.emplace_back(p_BL + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
+  }
+  const auto image = draw(board, X_BC, drawing);
+  ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+  const auto lamps = locate_lamps(board, {}, observer.observe(image.view()));
+  ASSERT_EQ(lamps.count, 1);
+  ASSERT_EQ(lamps.lamp[0].status, LampStatus::kFound);
+  EXPECT_EQ(lamps.lamp[0].probes, 1);
+  EXPECT_LT((lamps.lamp[0].p_RL - board.X_RB * p_BL).norm(), 0.06);
+}
+
 TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
   const Board board = shipped_board();
   const auto X_BC = real_camera(board);
