@@ -18,3 +18,8 @@ pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)  # OpenGL without a window
 find_package(embree 3.13 REQUIRED)  # the simulator alone: ray tracing
 find_package(assimp 5.2 REQUIRED)   # meshes: maps, and scenes of the simulator
+# The lab alone, and it works without: a peer that localisation is compared with. Its parts come without a package for CMake.
+find_path(VISP_INCLUDE visp3/mbt/vpMbGenericTracker.h)
+find_library(VISP_MBT visp_mbt)
+find_library(VISP_ME visp_me)
+find_library(VISP_CORE visp_core)

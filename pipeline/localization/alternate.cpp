@@ -16,6 +16,7 @@ constexpr float kNear_px = 2.0F;  // a match this far off explains half of its l
 constexpr std::size_t kMetricPieces = 48;
 constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
+constexpr double kLeastNoise = 0.3;  // of the stated noise
 
 }  // namespace
 
@@ -135,7 +136,13 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     if (round == 0) metric = motion_metric(X_WC);
     const auto matches = matcher_.match(view_.projected(), perceived, rules);
     gather(matches, perceived);
-    const Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
+    Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
+    if (options.measured_noise && solution.solved) {
+      const double noise = std::clamp(solution.rms_px / parameters_.system_sigma_px, kLeastNoise, 1.0);
+      for (LineDistance& line : lines_) line.sigma_px *= noise;
+      const Solution measured = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
+      if (measured.solved) solution.X_WC = measured.X_WC;
+    }
     ++estimate.rounds;
     estimate.expected = static_cast<int>(view_.projected().size());
     estimate.matches = static_cast<int>(matches.size());

@@ -41,6 +41,8 @@ struct AlternateOptions {
   bool look_first = true;       ///< false: the pieces of the last look are good enough.
   bool look_again = true;       ///< when the pose moved far.
   bool whole_matching = false;  ///< radius stays (the paper's).
+  bool measured_noise =
+      false;  ///< the pose out of the noise that the matches show; its covariance stays the stated one's.
 };
 
 /// Expectation and maximisation (4.1): what is visible from the pose, matched with what was perceived, moves the pose; and again until it

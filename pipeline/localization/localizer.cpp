@@ -1,6 +1,7 @@
 #include "pipeline/localization/localizer.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "pipeline/localization/alternate.h"
@@ -14,6 +15,14 @@ namespace cgsr::localization {
 namespace {
 
 constexpr double kReachOfPrior = 2.5;  // sigmas of the prior that matching reaches from the prediction
+
+// Beside the prior's middle where its sigma moves the image more than a pose does that is followed: still one image's work.
+constexpr double kOneStart_px = 3.5;
+constexpr std::uint32_t kNearStarts = 8;
+constexpr double kNearSpread_px = 1.0;  // an axis of the prior that moves the image less needs no starts
+constexpr double kNearest = 1.8;        // sigmas
+constexpr double kNearRival_px = 4.0;   // a pose that is further off and as good leaves the answer open
+constexpr float kNearRadius = 0.6F;     // of the first start's
 
 std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters) {
   if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
@@ -43,7 +52,8 @@ struct Localizer::State {
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
         search(parameters, alternation, perception.camera()) {}
 
-  Correction from_one_start(const Belief& belief, double widest_px, WorkBudget& budget);
+  Correction from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
+  [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
   /// \param bounds  of the gate: a search among many poses asks for more than a pose that is followed.
   void judge(const Estimate& estimate, float lead, const LocalizerParameters& bounds, Correction& answer) const;
   [[nodiscard]] LocalizerParameters bounds_of_tracking() const;
@@ -105,19 +115,57 @@ void Localizer::State::judge(const Estimate& estimate, float lead, const Localiz
   answer.covariance = covariance;
 }
 
-Correction Localizer::State::from_one_start(const Belief& belief, double widest_px, WorkBudget& budget) {
+// With the noise that the matches show: a wide prior must not pull a pose off what is seen well.
+Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belief) {
+  if (!estimate.solved || parameters.method != Method::kGlCorrect) return estimate;
+  AlternateOptions options;
+  options.rounds = 1;
+  options.radius_px = static_cast<float>(parameters.match_radius_least_px);
+  options.measured_noise = true;
+  UnlimitedBudget whole;
+  const Estimate better = alternation.refine(estimate.solution.X_WC, belief, perception.edges(), options, whole);
+  return better.solved ? better : estimate;
+}
+
+Correction Localizer::State::from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget) {
   Correction answer;
   AlternateOptions options;
   options.rounds = parameters.iterations;
-  options.radius_px = static_cast<float>(
-      std::clamp(kReachOfPrior * widest_px + 2.0, parameters.match_radius_least_px, parameters.match_radius_px));
+  options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * shape.widest_px() + 2.0,
+                                                    parameters.match_radius_least_px, parameters.match_radius_px));
   options.look_first = false;  // drawn already, for the prior's width
-  const Estimate estimate = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
-  if (estimate.rounds == 0) {
+  Estimate best = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
+  if (best.rounds == 0) {
     answer.reason = Reason::kNoBudget;
     return answer;
   }
-  judge(estimate, 1.0F, bounds_of_tracking(), answer);
+  if (!parameters.search || shape.widest_px() <= kOneStart_px) {
+    judge(best, 1.0F, bounds_of_tracking(), answer);
+    return answer;
+  }
+  const geometry::Matrix6d metric = alternation.motion_metric(belief.prior.X_WC);
+  const auto rank = [](const Estimate& estimate) { return estimate.solved ? evidence_of(estimate, 0.0F) : -10.0F; };
+  std::array<Estimate, kNearStarts + 1> found;
+  found[0] = best;
+  options.look_first = true;
+  options.radius_px *= kNearRadius;
+  for (std::uint32_t start = 1; start <= kNearStarts; ++start) {
+    geometry::Vector6d step = geometry::Vector6d::Zero();
+    for (int i = 0; i < 6; ++i) {
+      if (shape.motion_px[i] >= kNearSpread_px)
+        step += std::clamp(even_normal(start, i), -kNearest, kNearest) * shape.axes.col(i);
+    }
+    found[start] =
+        alternation.refine(geometry::moved(belief.prior.X_WC, step), belief, perception.edges(), options, budget);
+    if (rank(found[start]) > rank(best)) best = found[start];
+  }
+  float lead = 1.0F;
+  for (const Estimate& other : found) {
+    if (!other.solved) continue;
+    const geometry::Vector6d step = geometry::step_between(best.solution.X_WC, other.solution.X_WC);
+    if (step.dot(metric * step) > kNearRival_px * kNearRival_px) lead = std::min(lead, rank(best) - rank(other));
+  }
+  judge(settled(best, belief), lead, parameters, answer);
   return answer;
 }
 
@@ -147,14 +195,14 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     s.alternation.project(prior.X_WC);
     const PriorShape shape = PriorShape::of(prior.covariance, s.alternation.motion_metric(prior.X_WC));
     if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px) {
-      answer = s.from_one_start(belief, shape.widest_px(), budget);
+      answer = s.from_near_starts(belief, shape, budget);
     } else {
       s.search.begin(belief);
     }
   }
   if (s.search.running()) {
     if (s.search.go_on(belief, s.perception.edges(), budget)) {
-      s.judge(s.search.best(), s.search.lead(), s.parameters, answer);
+      s.judge(s.settled(s.search.best(), belief), s.search.lead(), s.parameters, answer);
     } else {
       answer.reason = Reason::kSearching;
     }

@@ -160,12 +160,14 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
     }
     if (images_ == 0) return follow(image);
     const geometry::Pose X_WC_before = state_->tracker->now().X_WC;
+    const bool corrected_before = state_->tracker->now().correction.corrected;
     state_->tracker->moved(odometry_.empty() ? X_RR_last_ : X_R0R1);
     const localization::Correction answer = follow(image);
-    // Without odometry: as it moved last, so it moves on.
+    // Without odometry: as it moved last, so it moves on; what ends a loss is no movement.
     if (odometry_.empty())
-      X_RR_last_ = answer.corrected ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
-                                    : geometry::Pose::Identity();
+      X_RR_last_ = answer.corrected && corrected_before
+                       ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
+                       : geometry::Pose::Identity();
     return answer;
   }
   const auto row = row_for(priors_, priors_file_);

@@ -78,6 +78,30 @@ TEST(Localizer, CorrectsANarrowPriorFromOneImage) {
   }
 }
 
+// Too wide for one start, too narrow for a search: a few starts, still in one image. One start alone is caught by the other border of a tape.
+TEST(Localizer, CorrectsAPriorOfMiddlingWidthFromOneImage) {
+  constexpr PriorSigmas kMiddling{.x_m = 0.03, .y_m = 0.03, .z_m = 0.01, .heading_rad = 0.011, .tilt_rad = 0.005};
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  RandomNumbers random(13);
+  int corrected = 0;
+  constexpr int kTrials = 12;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Pose truth = in_small_room(random.uniform(0.8, 1.6), random.uniform(1.2, 2.2), random.uniform(-0.2, 0.7));
+    const Picture picture(map, truth, camera, 1.5, static_cast<std::uint32_t>(trial));
+    int images = 0;
+    const Correction answer = answer_of(localizer, picture.view(), drawn_prior(truth, kMiddling, random), images);
+    EXPECT_EQ(images, 1);
+    if (!answer.corrected) continue;
+    ++corrected;
+    const Error error = error_of(truth, answer.X_WC);
+    EXPECT_LT(error.position_m, 0.02);
+    EXPECT_LT(error.direction_deg, 0.5);
+  }
+  EXPECT_GE(corrected, kTrials - 1);
+}
+
 TEST(Localizer, FindsThePoseInAWidePrior) {
   const world::Map map = small_room();
   const geometry::Camera camera = room_camera();

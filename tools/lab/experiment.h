@@ -19,7 +19,9 @@ struct Setting {
   std::uint64_t seed = 1;
   std::optional<int> trials;                  ///< nothing: each table's own number
   std::optional<std::filesystem::path> data;  ///< the folder of real images, where there is one
-  bool count = true;                          ///< measure instructions as well, which is slow
+  std::optional<std::filesystem::path>
+      videos;         ///< where tables that film put their films; nothing: in the folder for temporary files
+  bool count = true;  ///< measure instructions as well, which is slow
   config::Color configuration;
   std::string config_file;  ///< where it came from; empty: it is what ships
   std::function<void(const std::string&)> progress = [](const std::string&) {};

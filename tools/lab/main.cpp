@@ -33,7 +33,7 @@ struct ReproduceOptions {
   std::vector<std::string> names;
   std::uint64_t seed = 1;
   int trials = 0;
-  std::string data, json, html, config;
+  std::string data, json, html, config, videos;
   bool list = false;
   bool no_count = false;
 };
@@ -69,6 +69,7 @@ Result<Setting> setting_of(const ReproduceOptions& options) {
   setting.count = !options.no_count;
   if (options.trials > 0) setting.trials = options.trials;
   if (!options.data.empty()) setting.data = options.data;
+  if (!options.videos.empty()) setting.videos = options.videos;
   if (isatty(STDERR_FILENO) != 0) {
     setting.progress = [](const std::string& words) { fmt::print(stderr, "\r\033[K{}", words); };
   }
@@ -154,6 +155,8 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_option("--trials", options.trials, "instead of each table's own number")->check(CLI::PositiveNumber);
   app.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   app.add_option("--data", options.data, "folder of recorded sequences")->envname("CGSR_DATA");
+  app.add_option("--videos", options.videos,
+                 "folder for the films of tables that film; none: cgsr-videos in the temporary folder");
   app.add_flag("--no-count", options.no_count, "leave out the instructions, which are slow to count");
   app.add_option("--json", options.json, "write the rows for machines");
   app.add_option("--html", options.html, "write a page with tables and plots");
