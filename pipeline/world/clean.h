@@ -14,7 +14,8 @@ namespace cgsr::world {
 ///   in one straight line are one edge again. No edge: where a surface meets itself, or one of its own material in its own plane;
 /// - what each edge is seen against is looked for along short rays, see Edge::sides, at several places of it: what most of them say;
 /// - edges, surfaces and triangles are put in spatial order.
-/// Errors: no surface with an area, numbers that are not finite, more than kLargestExtent_m across, more than kLargest… corners or faces.
+/// Errors: no surface with an area, numbers that are not finite, more than kLargestExtent_m across, more than kLargest… corners or
+/// faces, more than kLargestFan triangles at one edge.
 Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m);
 
 }  // namespace cgsr::world

@@ -7,7 +7,10 @@
 #include <numeric>
 #include <tuple>
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
+
+#include "pipeline/world/soup.h"
 
 namespace cgsr::world {
 namespace {
@@ -29,12 +32,14 @@ class Joiner {
   Joiner(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m, Map& map)
       : triangles_(triangles), materials_(materials), weld_m_(weld_m), map_(map) {}
 
-  void run() {
+  Result<void> run() {
     measure();
     list_sides();
+    if (auto good = check_fans(); !good) return good;
     grow();
     drop_doubles();
     deliver();
+    return {};
   }
 
  private:
@@ -86,6 +91,22 @@ class Joiner {
       const std::uint32_t t = sides_[i].triangle;
       where_[t][seen[t]++] = i;
     }
+  }
+
+  // Everything looks at all of an edge's neighbours, and no box in a tree keeps them apart: a fan of very many would cost an age.
+  [[nodiscard]] Result<void> check_fans() const {
+    for (std::size_t i = 0; i < sides_.size();) {
+      const std::size_t first = i;
+      for (; i < sides_.size() && sides_[i].edge == sides_[first].edge; ++i) continue;
+      if (i - first <= kLargestFan) continue;
+      const Eigen::Vector3d a = point(static_cast<std::uint32_t>(sides_[first].edge >> 32U));
+      const Eigen::Vector3d b = point(static_cast<std::uint32_t>(sides_[first].edge & 0xFFFFFFFFU));
+      return fail(
+          fmt::format("{} triangles share the edge from ({:.3f}, {:.3f}, {:.3f}) to ({:.3f}, {:.3f}, {:.3f}): expected "
+                      "at most {}; this is no map of a place",
+                      i - first, a.x(), a.y(), a.z(), b.x(), b.y(), b.z(), kLargestFan));
+    }
+    return {};
   }
 
   // From the largest triangle that is left, over edges, as far as the plane goes.
@@ -250,9 +271,9 @@ class Joiner {
 
 }  // namespace
 
-void join(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m,
-          Map& map) {
-  Joiner(triangles, materials, weld_m, map).run();
+Result<void> join(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m,
+                  Map& map) {
+  return Joiner(triangles, materials, weld_m, map).run();
 }
 
 }  // namespace cgsr::world

@@ -13,6 +13,7 @@ namespace cgsr::world {
 inline constexpr std::uint32_t kLargestCorners = 24'000'000;
 inline constexpr std::uint32_t kLargestFaces = 12'000'000;
 inline constexpr std::uint32_t kLargestOutline = 2'000;  ///< corners of one face.
+inline constexpr std::uint32_t kLargestFan = 256;        ///< triangles at one edge.
 inline constexpr float kLargestExtent_m = 1e6F;
 
 /// What a file says, before clean-up: faces as outlines, in W, metres.

@@ -1,3 +1,4 @@
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -369,6 +370,32 @@ TEST(Clean, DrawnLinesStayUnlessTheyAreEdgesAnyway) {
   const Map map = maker.map();
   EXPECT_EQ(map.edges.size(), 5U);
   EXPECT_EQ(count(map, EdgeKind::kDrawn), 1);
+}
+
+// Each triangle is in order by itself; together they would keep everything that looks about an edge busy for minutes.
+TEST(CleanFault, AFanAboutOneEdgeIsRefusedAtOnce) {
+  constexpr int kTriangles = 100000;
+  Maker maker;
+  maker.material("plain", 0.5F);
+  for (int i = 0; i < kTriangles; ++i) {
+    const float angle = 6.2831853F * static_cast<float>(i) / kTriangles;
+    const float away = 50.0F;  // far enough that corners are not one
+    maker.face({{0, 0, 0}, {0, 0, 1}, {away * std::cos(angle), away * std::sin(angle), 0.5F}});
+  }
+  const auto begun = std::chrono::steady_clock::now();
+  const auto map = clean(maker.soup(), 1e-4, 0.02);
+  ASSERT_FALSE(map);
+  EXPECT_THAT(map.error().message, testing::HasSubstr("triangles share the edge from (0.000, 0.000, 0.000)"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(20)) << "it used to take minutes";
+}
+
+TEST(Clean, AFanOfAFewSheetsIsAMap) {
+  Maker maker;
+  for (int i = 0; i < 32; ++i) {
+    const float angle = 6.2831853F * static_cast<float>(i) / 32.0F;
+    maker.face({{0, 0, 0}, {0, 0, 1}, {std::cos(angle), std::sin(angle), 0.5F}});
+  }
+  EXPECT_GE(maker.map().surfaces.size(), 16U);
 }
 
 TEST(Clean, RefusesWhatIsNoWorld) {
