@@ -46,15 +46,6 @@ void ShadePicture::take(const render::ShadeMasks& masks) {
   }
 }
 
-int WhatIsShaded::widening(const geometry::Matrix6d& covariance, double lamp_sigma_m) const {
-  const double place_m = largest_sigma(covariance.topLeftCorner<3, 3>());
-  const double turn_rad = largest_sigma(covariance.bottomRightCorner<3, 3>());
-  const double border_m = std::hypot(place_m, parameters_.border_per_lamp * lamp_sigma_m);
-  const double cells_per_rad = camera_.fx_px * parameters_.masks.width / camera_.width_px;
-  const double cells = parameters_.sigmas * cells_per_rad * std::hypot(turn_rad, border_m / parameters_.nearest_m);
-  return static_cast<int>(std::min(std::ceil(cells), static_cast<double>(parameters_.widen_most)));
-}
-
 ShadeSight WhatIsShaded::look(const geometry::Pose& X_WC, const geometry::Matrix6d& covariance,
                               const illumination::KnownLamp* lamp) {
   ShadeSight sight;
@@ -68,8 +59,14 @@ ShadeSight WhatIsShaded::look(const geometry::Pose& X_WC, const geometry::Matrix
     return sight;
   }
   sight.status = ShadeStatus::kMasked;
-  sight.widened_cells = widening(covariance, lamp_sigma_m);
-  sight.masks = &volumes_.look(X_WC, camera_, lamp->p_WL, sight.widened_cells);
+  // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way.
+  Eigen::Vector3d way = lamp->p_WL - p_WL_kept_;
+  if (!(way.norm() <= parameters_.lamp_kept_m)) {
+    p_WL_kept_ = lamp->p_WL;
+    way.setZero();
+  }
+  const render::ShadeErrors errors{lamp->covariance + way * way.transpose(), covariance};
+  sight.masks = &volumes_.look(X_WC, camera_, p_WL_kept_, errors);
   sight.picture.take(*sight.masks);
   return sight;
 }

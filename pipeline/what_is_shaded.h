@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "pipeline/geometry/camera.h"
@@ -16,23 +17,16 @@ namespace cgsr {
 
 /// Section [shade] of a robot's file.
 struct ShadeStageParameters {
-  double sigmas = 2.0;
-  double nearest_m = 2.0;
-  double border_per_lamp = 0.4;
-  int widen_most = 8;
   double lamp_sigma_most_m = 0.3;
+  double lamp_kept_m = 0.01;
   render::ShadeParameters masks;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("sigmas", self.sigmas, {0.0, 10.0}, "",
-                 "of lamp and pose together, by which the masks grow; 0: they are taken to be exact");
-    visit.number("nearest_m", self.nearest_m, {0.1, 100.0}, "m", "of shadows whose borders are still covered so");
-    visit.number("border_per_lamp", self.border_per_lamp, {0.0, 10.0}, "",
-                 "way of a shadow's border for each metre that the lamp is off: of a table under a lamp 0.4");
-    visit.number("widen_most", self.widen_most, {0, 100}, "cells", "the masks never grow by more");
     visit.number("lamp_sigma_most_m", self.lamp_sigma_most_m, {0.001, 10.0}, "m",
                  "a lamp that is known no better makes no masks");
+    visit.number("lamp_kept_m", self.lamp_kept_m, {0.0, 1.0}, "m",
+                 "so far the lamp's estimate may wander before its silhouettes are made anew");
     visit.section("masks", self.masks, "How shaded regions are found (5.2)");
   }
 };
@@ -67,7 +61,6 @@ class ShadePicture {
 struct ShadeSight {
   ShadeStatus status = ShadeStatus::kNoMap;
   const render::ShadeMasks* masks = nullptr;  ///< until the stage's next run; null: none, and why `status` says.
-  int widened_cells = 0;
   ShadePicture picture{};
 };
 
@@ -85,11 +78,10 @@ class WhatIsShaded {
                   const illumination::KnownLamp* lamp);
 
  private:
-  [[nodiscard]] int widening(const geometry::Matrix6d& covariance, double lamp_sigma_m) const;
-
   geometry::Camera camera_;
   ShadeStageParameters parameters_;
   render::ShadowVolumes volumes_;
+  Eigen::Vector3d p_WL_kept_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
 };
 
 }  // namespace cgsr
