@@ -29,7 +29,11 @@ constexpr double kModelSigma_m = 0.0006;  // of a tip, by what a penumbra is lik
 constexpr double kMostSigma_m = 0.004;    // of a tip that is called found
 constexpr double kFurthestOut_m = 0.008;
 constexpr double kFurthestIn_m = 0.003;
-constexpr int kIterations = 7;
+constexpr int kIterations = 5;      // with every second sample
+constexpr int kLastIterations = 2;  // with all
+constexpr std::array kNear_px{1.0, 1.7, 2.4};
+constexpr std::array kFar_px{9.0, 11.0, 13.0};
+constexpr float kLeastFall = 1.4F;  // grey levels, mean
 constexpr std::array kTrialOut_m{-0.0015, 0.0005, 0.0025, 0.005, 0.009};
 
 enum Unknown : std::uint8_t {
@@ -80,22 +84,27 @@ bool ConeStrip::may_be(const LumaView& image, const BoardView& view, const std::
       value = image.at(pixel.at.x(), pixel.at.y());
       return true;
     };
-    float near = 0.0F;
-    float next = 0.0F;
-    float far = 0.0F;
-    float further = 0.0F;
-    if (!value_at(1.2, near) || !value_at(2.0, next) || !value_at(11.0, far) || !value_at(15.0, further)) continue;
-    darker[static_cast<std::size_t>(count++)] = 0.5F * (far + further - near - next);
+    float sum = 0.0F;
+    bool all = true;
+    for (std::size_t k = 0; k < kNear_px.size() && all; ++k) {
+      float near = 0.0F;
+      float far = 0.0F;
+      all = value_at(kNear_px[k], near) && value_at(kFar_px[k], far);
+      sum += far - near;
+    }
+    if (all) darker[static_cast<std::size_t>(count++)] = sum / static_cast<float>(kNear_px.size());
   }
-  if (count < 8) return false;
-  float most = -1e3F;
-  float least = 1e3F;
-  for (std::size_t i = 0; i + 3 < static_cast<std::size_t>(count); ++i) {
-    const float mean = 0.25F * (darker[i] + darker[i + 1] + darker[i + 2] + darker[i + 3]);
-    most = std::max(most, mean);
-    least = std::min(least, mean);
+  // Where a strip ends, what is missing falls.
+  constexpr int kBefore = 7;
+  constexpr int kAfter = 5;
+  for (int i = kBefore; i + kAfter <= count; ++i) {
+    float before = 0.0F;
+    float after = 0.0F;
+    for (int k = 0; k < kBefore; ++k) before += darker[static_cast<std::size_t>(i - 1 - k)];
+    for (int k = 0; k < kAfter; ++k) after += darker[static_cast<std::size_t>(i + k)];
+    if (before / kBefore - after / kAfter > kLeastFall) return true;
   }
-  return most - least > static_cast<float>(std::max(1.2, 0.5 * parameters_.least_contrast));
+  return false;
 }
 
 int ConeStrip::choose_samples(const LumaView& image, const BoardView& view,
@@ -140,7 +149,7 @@ float ConeStrip::hidden(const Eigen::Vector2f& from_foot, const Outline& outline
   return std::max(0.0F, share);
 }
 
-ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts) const {
+ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts, int every) const {
   Sums sums;
   const auto radius = static_cast<float>(probe_.radius_m);
   const auto soft_end = static_cast<float>(0.5 * parameters_.lamp_radius_m * probe_.p_BA.z() /
@@ -164,7 +173,7 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
   std::array<std::array<float, 12>, kUnknowns> table{};
   float squares = 0.0F;
   float weights = 0.0F;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < count; i += every) {
     const Sample& sample = samples_[static_cast<std::size_t>(i)];
     const float along = sample.at.x();
     const float out = sample.at.y();
@@ -206,14 +215,16 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
     const float robust = 1.0F / (1.0F + relative * relative);
     for (std::size_t a = 0; a < kUnknowns; ++a) {
       const float weighted = robust * j[a];
-      for (std::size_t b = 0; b < 12; ++b) table[a][b] += weighted * j[b];
+      for (std::size_t b = a / 4 * 4; b < 12; ++b) table[a][b] += weighted * j[b];
     }
     squares += robust * residual * residual;
     weights += robust;
   }
   for (int a = 0; a < kUnknowns; ++a) {
-    for (int b = 0; b < kUnknowns; ++b)
-      sums.H(a, b) = static_cast<double>(table[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]);
+    for (int b = a; b < kUnknowns; ++b) {
+      sums.H(a, b) = sums.H(b, a) =
+          static_cast<double>(table[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]);
+    }
     sums.g[a] = static_cast<double>(table[static_cast<std::size_t>(a)][10]);
   }
   sums.squares = static_cast<double>(squares);
@@ -364,11 +375,11 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   x[kCone] = static_cast<double>(cone) / cones;
   x[kLevel] = static_cast<double>(board) / boards;
   x[kTipAlong] = 2.0 * probe_.radius_m;
-  const auto solve = [&](bool with_shadow, bool darker_counts, int iterations, Sums& sums, double& variance,
+  const auto solve = [&](bool with_shadow, bool darker_counts, int every, int iterations, Sums& sums, double& variance,
                          Normal& H) {
     const Unknowns centre = x;
     for (int iteration = 0; iteration < iterations; ++iteration) {
-      sums = sum_up(x, count, with_shadow, darker_counts);
+      sums = sum_up(x, count, with_shadow, darker_counts, every);
       variance = std::max(kLeastVariance, sums.squares / std::max(1.0, sums.weights - kUnknowns));
       H = sums.H / (variance * kCorrelation);
       Unknowns g = sums.g / (variance * kCorrelation);
@@ -391,9 +402,10 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   double variance = 1.0;
   Normal H;
   // First without a shadow, what is darker than that counting less.
-  if (!solve(false, false, 3, sums, variance, H)) return false;
+  if (!solve(false, false, 2, 3, sums, variance, H)) return false;
   if (!start_from(x, count)) return false;
-  if (!solve(true, true, kIterations, sums, variance, H)) return false;
+  if (!solve(true, true, 2, kIterations, sums, variance, H)) return false;
+  if (!solve(true, true, 1, kLastIterations, sums, variance, H)) return false;
   const double explained = sums.squares;
   Unknowns without = x;
   without[kDark] = 0.0;
@@ -404,7 +416,7 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
     Sums plain;
     double plain_variance = 1.0;
     Normal plain_H;
-    if (!solve(false, true, 3, plain, plain_variance, plain_H)) return false;
+    if (!solve(false, true, 1, 2, plain, plain_variance, plain_H)) return false;
     gain = (plain.squares - explained) / (variance * kCorrelation);
     x = kept;
   }

@@ -60,7 +60,7 @@ class ConeStrip {
   [[nodiscard]] bool fit_side(const LumaView& image, const BoardView& view,
                               const std::array<Outline, kMostProbes>& behind, std::size_t side, ProbeShadow& shadow,
                               double& gain);
-  [[nodiscard]] Sums sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts) const;
+  [[nodiscard]] Sums sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts, int every) const;
   [[nodiscard]] bool start_from(Unknowns& x, int count) const;
   [[nodiscard]] bool is_shown(const Unknowns& x, int count) const;
   [[nodiscard]] float hidden(const Eigen::Vector2f& from_foot, const Outline& outline, float over_length,

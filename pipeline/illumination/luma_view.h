@@ -23,11 +23,12 @@ class LumaView {
   }
 
   /// Bilinear, in levels of 0..255; (x, y) is inside.
-  [[nodiscard]] float at(double x, double y) const {
+  [[nodiscard]] float at(double x, double y) const { return at(static_cast<float>(x), static_cast<float>(y)); }
+  [[nodiscard]] float at(float x, float y) const {
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
-    const auto fx = static_cast<float>(x - column);
-    const auto fy = static_cast<float>(y - row);
+    const float fx = x - static_cast<float>(column);
+    const float fy = y - static_cast<float>(row);
     const std::uint8_t* upper = data_ + row * stride_ + static_cast<std::ptrdiff_t>(column) * step_;
     const std::uint8_t* lower = upper + stride_;
     const float a = static_cast<float>(upper[0]);

@@ -34,7 +34,7 @@ struct Round {
   double soft_px;  // what it takes for far off
   double sparser;  // than the parameters' spacing
 };
-constexpr std::array kRound{Round{6.0, 2.5}, Round{2.5, 2.0}, Round{0.8, 1.0}, Round{0.8, 1.0}};
+constexpr std::array kRound{Round{6.0, 2.5}, Round{2.5, 2.0}, Round{0.8, 1.5}, Round{0.8, 1.0}};
 constexpr int kRounds = static_cast<int>(kRound.size());
 
 // A place on an expected line, and where its edge was found.
@@ -48,37 +48,43 @@ struct EdgePoint {
   int feature;       // board 0, cones 1 and 2
 };
 
-// Brightness across an expected line, at whole pixels; the strongest change within reach, to a fraction of a pixel.
+// Brightness across an expected line, at whole pixels; the strongest change within reach, to a fraction of a pixel. `at` keeps the reach inside.
 bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal, int reach, double least_contrast,
                double& offset_px) {
-  const Vector2d far = (reach + 1.0) * normal;
-  if (!image.holds(at.x() - far.x(), at.y() - far.y()) || !image.holds(at.x() + far.x(), at.y() + far.y()))
-    return false;
   std::array<float, 2 * kMostReach_px + 3> value;
   const int count = 2 * reach + 3;
+  const auto dx = static_cast<float>(normal.x());
+  const auto dy = static_cast<float>(normal.y());
+  const float x = static_cast<float>(at.x()) - static_cast<float>(reach + 1) * dx;
+  const float y = static_cast<float>(at.y()) - static_cast<float>(reach + 1) * dy;
   for (int i = 0; i < count; ++i) {
-    const Vector2d p = at + (i - reach - 1) * normal;
-    value[static_cast<std::size_t>(i)] = image.at(p.x(), p.y());
+    const auto step = static_cast<float>(i);
+    value[static_cast<std::size_t>(i)] = image.at(x + step * dx, y + step * dy);
   }
   int best = -1;
   float most = 0.0F;
-  std::array<float, 2 * kMostReach_px + 3> change;
   for (int i = 1; i + 1 < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    change[k] = std::abs(value[k + 1] - value[k - 1]);
     // Of two edges alike the nearer one: silhouette beside shadow.
-    const float score = change[k] * (1.0F - 0.03F * std::abs(static_cast<float>(i - reach - 1)));
+    const float nearer = 1.0F - 0.03F * static_cast<float>(std::abs(i - reach - 1));
+    const float score = std::abs(value[k + 1] - value[k - 1]) * nearer;
     if (score > most) {
       most = score;
       best = i;
     }
   }
   if (best < 2 || best + 2 >= count) return false;
-  const auto k = static_cast<std::size_t>(best);
-  if (change[k] < static_cast<float>(least_contrast)) return false;
-  const float bend = change[k - 1] - 2.0F * change[k] + change[k + 1];
+  const auto change = [&value](int i) {
+    const auto k = static_cast<std::size_t>(i);
+    return std::abs(value[k + 1] - value[k - 1]);
+  };
+  const float middle = change(best);
+  if (middle < static_cast<float>(least_contrast)) return false;
+  const float before = change(best - 1);
+  const float after = change(best + 1);
+  const float bend = before - 2.0F * middle + after;
   if (bend >= 0.0F) return false;
-  const float fraction = std::clamp(0.5F * (change[k - 1] - change[k + 1]) / bend, -1.0F, 1.0F);
+  const float fraction = std::clamp(0.5F * (before - after) / bend, -1.0F, 1.0F);
   offset_px = best - reach - 1 + static_cast<double>(fraction);
   return true;
 }
@@ -161,7 +167,7 @@ class Collector {
   void add(const Vector3d& p_B, const Vector3d& along, int feature) {
     if (count_ >= kMostPoints) return;
     const auto d = view_.derivative(p_B);
-    if (!d.in_front || !image_.holds(d.at.x(), d.at.y(), reach_ + 1.0)) return;
+    if (!d.in_front || !image_.holds(d.at.x(), d.at.y(), reach_ + 1.1)) return;
     const Vector2d tangent = d.by_point * along;
     const double length = tangent.norm();
     if (length < 1e-9) return;

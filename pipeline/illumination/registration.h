@@ -10,7 +10,7 @@
 namespace cgsr::illumination {
 
 struct RegistrationParameters {
-  double spacing_px = 8.0;
+  double spacing_px = 10.0;
   double first_reach_px = 13.0;
   double next_reach_px = 4.0;
   double least_contrast = 5.0;

@@ -24,14 +24,18 @@ constexpr double kEndOfLine = 0.9;        // of the way to the tip's shadow, whi
 constexpr int kAcross = 9;                // samples across a line
 constexpr int kLeastAcross = 5;           // of them to be seen
 constexpr int kLeastSamples = 20;         // for a fit at all
-constexpr int kMostPlaces = 14;           // along a line
-constexpr double kCorrelation = 1.6;      // samples read between pixels are not independent
-constexpr double kLeastScore = 60.0;      // grey levels squared that a wedge explains
-constexpr double kLeastKnown_m = 0.004;   // of the tip beforehand, by where a single line ends
-constexpr double kMostToTip_m = 0.02;     // along a single line, for its end to be looked at
-constexpr double kTipFound_m = 0.0025;    // then the tip's shadow must be known to this
-constexpr double kEndWithTip = 1.1;       // the tip is most of what is seen
-constexpr double kLeastOfFirst = 0.35;    // a second lamp's shadow, of the first one's contrast
+constexpr int kLeastSparse = 24;
+constexpr double kSparseContrast = 6.0;  // grey levels; a weaker one needs all samples from the start
+constexpr double kSettled_m = 0.0015;    // a tip that moved less needs no other samples
+constexpr int kMostPlaces = 14;          // along a line
+constexpr double kCorrelation = 1.6;     // samples read between pixels are not independent
+constexpr double kLeastScore = 60.0;     // grey levels squared that a wedge explains
+constexpr double kLeastKnown_m = 0.004;  // of the tip beforehand, by where a single line ends
+constexpr double kMostToTip_m = 0.02;    // along a single line, for its end to be looked at
+constexpr double kTipFound_m = 0.0025;   // then the tip's shadow must be known to this
+constexpr double kSameContrast = 0.75;   // of the line alone
+constexpr double kEndWithTip = 1.1;      // the tip is most of what is seen
+constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
 constexpr double kRadiusSigma_m = 0.0003;
 constexpr double kLeastFilled = 0.75;  // of the places inside, dark
 
@@ -40,6 +44,13 @@ enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLev
 constexpr int kUnknowns = 9;
 using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+
+template <class Ring>
+float total(const Ring& ring) {
+  float sum = 0.0F;
+  for (const float value : ring) sum += value;
+  return sum;
+}
 
 }  // namespace
 
@@ -161,45 +172,79 @@ void ShadowFinder::take_plane_away() {
   }
 }
 
-ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& tried, int tried_count) const {
-  Candidate best;
-  for (int ray = 0; ray < kRays; ++ray) {
-    bool near_tried = false;
-    for (int i = 0; i < tried_count; ++i) {
-      const int apart = std::abs(tried[static_cast<std::size_t>(i)] - ray);
-      near_tried = near_tried || std::min(apart, kRays - apart) <= 3;
+// A wedge is dark in its middle, near the base: rays that are not need no comparison with wedges.
+bool ShadowFinder::may_be_middle(int ray) const {
+  float n = 0.0F;
+  float v = 0.0F;
+  for (int d = -1; d <= 1; ++d) {
+    const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
+    for (std::size_t ring = 0; ring < 2; ++ring) {
+      n += valid_[k][ring];
+      v += value_[k][ring];
     }
-    if (near_tried) continue;
-    float n = 0.0F;
-    float v = 0.0F;
-    for (int d = -kHalfWindow; d <= kHalfWindow; ++d) {
-      const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
-      for (std::size_t ring = 0; ring < kRings; ++ring) {
+  }
+  const float least = -0.25F * static_cast<float>(parameters_.least_contrast);
+  if (n >= 3.0F) return v < least * n;
+  // The cone hides it: one of its sides, then.
+  for (const int way : {-1, 1}) {
+    n = v = 0.0F;
+    for (int d = 3; d <= 6; ++d) {
+      const auto k = static_cast<std::size_t>((ray + way * d + kRays) % kRays);
+      for (std::size_t ring = 0; ring < 3; ++ring) {
         n += valid_[k][ring];
         v += value_[k][ring];
       }
     }
-    if (n < 30.0F) continue;
+    if (n >= 2.0F && v < least * n) return true;
+  }
+  return false;
+}
+
+ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& tried, int tried_count,
+                                                     bool everywhere) const {
+  Candidate best;
+  float best_score = 0.0F;
+  const auto may_be = [&](int ray) {
+    for (int i = 0; i < tried_count; ++i) {
+      const int apart = std::abs(tried[static_cast<std::size_t>(i)] - ray);
+      if (std::min(apart, kRays - apart) <= 3) return false;
+    }
+    return everywhere || may_be_middle(ray);
+  };
+  int best_length = 0;
+  const auto compare = [&](int ray, int from, int to, int step) {
+    float n = 0.0F;
+    float v = 0.0F;
+    for (int d = -kHalfWindow; d <= kHalfWindow; ++d) {
+      const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
+      n += ray_valid_[k];
+      v += ray_value_[k];
+    }
+    if (n < 30.0F) return;
     const float mean = v / n;
-    for (int length = 0; length < kLengths; ++length) {
-      float m = 0.0F;
-      float mm = 0.0F;
-      float mv = 0.0F;
+    for (int length = from; length < to; length += step) {
+      // Lane by lane, so that four rings are one instruction.
+      Ring m{};
+      Ring mm{};
+      Ring mv{};
       for (int d = -kHalfWedge; d <= kHalfWedge; ++d) {
         const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
         const auto s = static_cast<std::size_t>(length * (2 * kHalfWedge + 1) + d + kHalfWedge);
         for (std::size_t ring = 0; ring < kRings; ++ring) {
-          m += shape_[s][ring] * valid_[k][ring];
-          mm += shape_square_[s][ring] * valid_[k][ring];
-          mv += shape_[s][ring] * value_[k][ring];
+          m[ring] += shape_[s][ring] * valid_[k][ring];
+          mm[ring] += shape_square_[s][ring] * valid_[k][ring];
+          mv[ring] += shape_[s][ring] * value_[k][ring];
         }
       }
-      const float variance = mm - m * m / n;
-      if (m < 1.5F || variance < 0.8F) continue;
-      const float covariance = mv - m * mean;
+      const float sum = total(m);
+      const float variance = total(mm) - sum * sum / n;
+      if (sum < 1.5F || variance < 0.8F) continue;
+      const float covariance = total(mv) - sum * mean;
       if (covariance >= 0.0F) continue;  // a shadow is dark
       const float explained = covariance * covariance / variance;
-      if (static_cast<double>(explained) <= best.score) continue;
+      if (explained <= best_score) continue;
+      best_score = explained;
+      best_length = length;
       best.score = static_cast<double>(explained);
       best.ray = ray;
       best.contrast = static_cast<double>(-covariance / variance);
@@ -208,12 +253,30 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
       best.tip_shadow =
           probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
     }
+  };
+  const int step = everywhere ? 1 : 3;
+  for (int ray = 0; ray < kRays; ++ray) {
+    if (may_be(ray)) compare(ray, everywhere ? 0 : 1, kLengths, step);
+  }
+  if (everywhere || best.ray < 0) return best;
+  const int ray = best.ray;
+  const int length = best_length;
+  for (int d = -1; d <= 1; ++d) {
+    const int beside = (ray + d + kRays) % kRays;
+    if (d == 0 || may_be(beside)) compare(beside, std::max(0, length - 2), std::min(kLengths, length + 3), 1);
   }
   return best;
 }
 
+void ShadowFinder::sum_rays() {
+  for (std::size_t r = 0; r < kRays; ++r) {
+    ray_valid_[r] = total(valid_[r]);
+    ray_value_[r] = total(value_[r]);
+  }
+}
+
 int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, const Vector2d& tip_shadow,
-                                 double slack_m, bool with_tip) {
+                                 double slack_m, bool with_tip, bool sparse) {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, tip_shadow);
   if (!outline.valid) return 0;
   int count = 0;
@@ -237,7 +300,9 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         {outline.touch[side].x() + 0.4 * reach * line.x(), outline.touch[side].y() + 0.4 * reach * line.y(), 0.0});
     if (!middle.in_front) continue;
     const double line_px = (middle.by_point.leftCols<2>() * line).norm() * (reach - begin);
-    const int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostPlaces);
+    int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostPlaces);
+    if (sparse) places = std::max(5, places / 2);
+    const int samples_across = sparse ? kAcross / 2 + 1 : kAcross;
     for (int i = 0; i < places; ++i) {
       const double along = begin + (reach - begin) * (i + 0.5) / places;
       const Vector2d centre = outline.touch[side] + along * line;
@@ -249,8 +314,8 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
       const double soft = penumbra_sigma(along);
       const double half = std::max(2.2 * m_per_px_, 2.2 * soft) + slack_m;
       const int before = count;
-      for (int k = 0; k < kAcross && count < kMostSamples; ++k) {
-        const double t = half * (2.0 * k / (kAcross - 1) - 1.0);
+      for (int k = 0; k < samples_across && count < kMostSamples; ++k) {
+        const double t = half * (2.0 * k / (samples_across - 1) - 1.0);
         const Vector2d p_B = centre + t * outline.inward[side];
         const Vector2d pixel = d.at + t * across;
         if (!image.holds(pixel.x(), pixel.y(), 1.0) || !seen(p_B)) continue;
@@ -259,7 +324,7 @@ int ShadowFinder::choose_samples(const LumaView& image, const BoardView& view, c
         sample.value = image.at(pixel.x(), pixel.y());
         sample.place = place;
       }
-      if (count - before < (with_tip ? 3 : kLeastAcross)) {
+      if (count - before < (with_tip || sparse ? 3 : kLeastAcross)) {
         count = before;
         continue;
       }
@@ -275,16 +340,23 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
   x << candidate.tip_shadow, probe_.foot_B, probe_.radius_m, candidate.contrast, candidate.level, 0.0, 0.0;
   Normal H;
   double variance = 0.0;
+  double moved_m = 1.0;
   int count = 0;
   const double foot_weight = 1.0 / std::max(1e-10, board_.place_sigma_m * board_.place_sigma_m);
+  // Few samples until the tip stays where it is, then all of them.
   constexpr int kChoices = 4;
-  double moved_m = 1.0;
-  for (int choice = 0; choice < kChoices; ++choice) {
-    const bool last = choice + 1 == kChoices || (choice > 0 && moved_m < 0.0008);
+  bool settled = false;
+  for (int choice = 0; choice < kChoices && !settled; ++choice) {
+    settled = choice + 1 == kChoices || (choice > 0 && moved_m < kSettled_m);
+    bool sparse = !settled && !with_tip && candidate.contrast > kSparseContrast;
     const Vector2d chosen_at = x.head<2>();
-    count = choose_samples(image, view, chosen_at,
-                           choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001, with_tip);
-    if (count < (with_tip ? kLeastSamples / 2 : kLeastSamples)) return false;
+    const double slack_m = choice == 0 ? std::min(0.004, 0.08 * (chosen_at - probe_.foot_B).norm()) : 0.001;
+    count = choose_samples(image, view, chosen_at, slack_m, with_tip, sparse);
+    if (sparse && count < kLeastSparse) {
+      sparse = false;
+      count = choose_samples(image, view, chosen_at, slack_m, with_tip, sparse);
+    }
+    if (count < (with_tip ? kLeastSamples / 2 : sparse ? kLeastSparse : kLeastSamples)) return false;
     const int steps = choice == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {
       const Vector2d tip = x.head<2>();
@@ -353,7 +425,7 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
         const float robust = 1.0F / (1.0F + relative * relative);
         for (std::size_t a = 0; a < 9; ++a) {
           const float w = robust * j[a];
-          for (std::size_t b = 0; b < 12; ++b) sums[a][b] += w * j[b];
+          for (std::size_t b = a / 4 * 4; b < 12; ++b) sums[a][b] += w * j[b];
         }
         squares += robust * residual * residual;
         weights += robust;
@@ -367,8 +439,9 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
       }
       Unknowns g;
       for (int a = 0; a < kUnknowns; ++a) {
-        for (int b = 0; b < kUnknowns; ++b)
-          H(a, b) = static_cast<double>(sums[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]);
+        for (int b = a; b < kUnknowns; ++b) {
+          H(a, b) = H(b, a) = static_cast<double>(sums[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]);
+        }
         g[a] = static_cast<double>(sums[static_cast<std::size_t>(a)][9]);
       }
       variance = std::max(0.3, static_cast<double>(squares) / std::max(1.0, static_cast<double>(weights) - kUnknowns));
@@ -401,7 +474,6 @@ bool ShadowFinder::fit(const LumaView& image, const BoardView& view, const Candi
       if (x[kDark] < 1.0) return false;
     }
     moved_m = (x.head<2>() - chosen_at).norm();
-    if (last) break;
   }
   const double distance = (x.head<2>() - probe_.foot_B).norm();
   const double flat = (x.head<2>() - probe_.p_BA.head<2>()).norm();
@@ -465,6 +537,9 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
   if (!fit(image, view, again, with_tip)) return;
+  // The same shadow, and not something else where the line ends.
+  if (with_tip.contrast < kSameContrast * shadow.contrast || shadow.contrast < kSameContrast * with_tip.contrast)
+    return;
   if (with_tip.covariance.trace() < kTipFound_m * kTipFound_m) shadow = with_tip;
 }
 
@@ -522,7 +597,8 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
   std::array<int, 4> tried{};
   int tried_count = 0;
   while (tried_count < 4 && found.count < kMostShadows) {
-    const Candidate candidate = best_candidate(tried, tried_count);
+    sum_rays();
+    const Candidate candidate = best_candidate(tried, tried_count, everywhere_);
     if (candidate.ray < 0 || candidate.score < kLeastScore || candidate.contrast < 0.5 * parameters_.least_contrast ||
         candidate.contrast < 0.5 * parameters_.least_share * level_ ||
         (found.count > 0 && candidate.contrast < kLeastOfFirst * found.shadow[0].contrast)) {

@@ -66,6 +66,9 @@ class ShadowFinder {
   /// \param saturation  the brightest level that the image can hold.
   Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
 
+  /// Compares every wedge with every ray, which costs five times as much: what the quick search is judged by.
+  void search_everywhere() { everywhere_ = true; }
+
   /// Of the places around the probe that the last image showed, the share that has no level left.
   [[nodiscard]] double share_saturated() const { return saturated_; }
 
@@ -100,10 +103,12 @@ class ShadowFinder {
   [[nodiscard]] double share_brighter_than(double level) const;
   void take_plane_away();
   void look_around(const LumaView& image, const BoardView& view);
-  [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count) const;
+  [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count, bool everywhere) const;
+  [[nodiscard]] bool may_be_middle(int ray) const;
+  void sum_rays();
   [[nodiscard]] bool fit(const LumaView& image, const BoardView& view, const Candidate& candidate, ProbeShadow& shadow);
   int choose_samples(const LumaView& image, const BoardView& view, const Eigen::Vector2d& tip_shadow, double slack_m,
-                     bool with_tip);
+                     bool with_tip, bool sparse);
   [[nodiscard]] bool seen(const Eigen::Vector2d& p_B) const;
   void look_for_tip(const LumaView& image, const BoardView& view, ProbeShadow& shadow);
   [[nodiscard]] bool is_filled(const ProbeShadow& shadow) const;
@@ -123,12 +128,15 @@ class ShadowFinder {
   std::array<double, kLengths> length_m_{};
   std::array<Ring, kRays> value_{};
   std::array<Ring, kRays> valid_{};
+  std::array<float, kRays> ray_value_{};  // their sums
+  std::array<float, kRays> ray_valid_{};
   std::array<Outline, kMostProbes> behind_;  // what the cones hide from the camera
   std::array<Sample, kMostSamples> samples_{};
   std::array<Place, 64> places_{};
   double m_per_px_ = 1e-3;
   double level_ = 0.0;  // of the board at the foot
   double saturated_ = 0.0;
+  bool everywhere_ = false;
 };
 
 }  // namespace cgsr::illumination

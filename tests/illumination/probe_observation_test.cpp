@@ -95,6 +95,31 @@ TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
   }
 }
 
+// The quick search against the one that leaves nothing out.
+TEST(ProbeObservationProperty, TheQuickSearchFindsWhatTheWholeOneDoes) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  for (const double way : {60.0, 150.0, 230.0, 300.0}) {
+    Drawing drawing;
+    drawing.lamps_B = {lamp_at(35.0, way)};
+    const auto image = draw(board, X_BC, drawing);
+    const LumaView luma(image.view());
+    for (int probe = 0; probe < 2; ++probe) {
+      ShadowFinder quick(board, probe, {}, kLampHeight_m);
+      ShadowFinder whole(board, probe, {}, kLampHeight_m);
+      whole.search_everywhere();
+      const auto a = quick.find(luma, X_BC, 253.5);
+      const auto b = whole.find(luma, X_BC, 253.5);
+      ASSERT_EQ(a.count, b.count) << way << ' ' << probe;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(a.count); ++k) {
+        ASSERT_EQ(a.shadow[k].lines, b.shadow[k].lines);
+        if (a.shadow[k].lines < 2) continue;
+        EXPECT_LT((a.shadow[k].p_BS - b.shadow[k].p_BS).norm(), 0.0005) << way << ' ' << probe;
+      }
+    }
+  }
+}
+
 TEST(ProbeObservation, TwoLampsThrowTwoShadows) {
   const Board board = shipped_board();
   Drawing drawing;
