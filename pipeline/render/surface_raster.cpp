@@ -140,7 +140,14 @@ bool SurfaceRaster::covers(std::uint32_t triangle, float u, float v) const {
   const Corner& a = corners_[t[0]];
   const Corner& b = corners_[t[1]];
   const Corner& c = corners_[t[2]];
-  if (a.w == 0.0F || b.w == 0.0F || c.w == 0.0F) return true;
+  if (a.w == 0.0F || b.w == 0.0F || c.w == 0.0F) {
+    // It reaches behind the near plane: the ray through the place is a sum of the corners' own, none of them taken away, or it passes by.
+    const Eigen::Vector3f ray(u, v, 1.0F);
+    const float whole = a.p.cross(b.p).dot(c.p);
+    const float sign = whole < 0.0F ? -1.0F : 1.0F;
+    return sign * ray.dot(b.p.cross(c.p)) >= 0.0F && sign * ray.dot(c.p.cross(a.p)) >= 0.0F &&
+           sign * ray.dot(a.p.cross(b.p)) >= 0.0F;
+  }
   const auto side = [&](const Corner& from, const Corner& to) {
     return (to.at.x() - from.at.x()) * (v - from.at.y()) - (to.at.y() - from.at.y()) * (u - from.at.x());
   };

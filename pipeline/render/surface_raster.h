@@ -33,7 +33,7 @@ class SurfaceRaster {
   [[nodiscard]] const DepthPlane& plane_of(std::uint32_t surface) const { return planes_[surface]; }
   /// Whether the camera is on the side that a drawn surface's normal points to.
   [[nodiscard]] bool from_front(std::uint32_t surface) const { return front_[surface] != 0; }
-  /// Whether a triangle that was drawn covers a place of the raster, exactly; one that is cut by the near plane is taken to.
+  /// Whether a triangle that was drawn covers a place of the raster, exactly.
   [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
 
   /// Sets bits where a convex part of a plane stands before what a buffer of this view holds.

@@ -102,6 +102,21 @@ TEST(DepthRaster, PiecesEndWhereSomethingStandsBefore) {
   EXPECT_NEAR(of_edge[0].p1.y(), camera.cy_px, 0.01);
 }
 
+// A skirting that runs past the camera: its front is cut by the near plane, and its far upper edge lies less than a cell above that.
+TEST(DepthRaster, WhatIsCutByTheNearPlaneHidesOnlyWhatItCovers) {
+  Map map;
+  add_box(map, {-8.0F, 3.40F, 0.0F}, {8.0F, 3.42F, 0.09F});
+  add_rectangle(map, {-8.0F, 3.42F, 0.0F}, {16.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 2.5F});
+  const auto pieces = seen(map, looking_from({0.0, 0.0, 0.84}, {5.0, 3.4, 0.09}));
+  float visible_px = 0.0F;
+  for (const VisiblePiece& piece : pieces) {
+    const auto& ends = map.edges[piece.edge].vertices;
+    const auto is_it = [&](std::uint32_t v) { return map.vertices[v].y() == 3.42F && map.vertices[v].z() == 0.09F; };
+    if (is_it(ends[0]) && is_it(ends[1])) visible_px += (piece.p1 - piece.p0).norm();
+  }
+  EXPECT_GT(visible_px, 300.0F);
+}
+
 TEST(DepthRaster, TapeAHairAboveTheFloorIsSeenAndBelowItIsNot) {
   for (const float height : {0.0F, 0.0005F, -0.05F}) {
     Map map;

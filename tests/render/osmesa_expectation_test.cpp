@@ -46,6 +46,9 @@ double shared_px(const std::vector<VisiblePiece>& first, const std::vector<Visib
 
 /// Every edge that either sees: both see the same of it, within 3 px at each end of each piece, but for a share of `most`.
 ///
+/// OpenGL draws finely: at 1280 columns a hidden edge less than a pixel behind a silhouette (the far side of a door's or a seat's thickness)
+/// shows in every fiftieth edge of the home.
+///
 /// Left open is an edge of which the raster itself sees something else from 6 mm beside, or when it may lie 0.3 % of its distance behind: there
 /// OpenGL's offset of a slope per pixel says what is visible, not the geometry.
 void agree_in(const std::string& name, int poses, double most) {
@@ -56,8 +59,8 @@ void agree_in(const std::string& name, int poses, double most) {
   lenient.tolerance = 0.003;
   DepthRaster within_a_hair(map, lenient);
   OsmesaParameters sharp;
-  sharp.width = 1280;
-  sharp.height = 960;
+  sharp.width = 2560;
+  sharp.height = 1920;
   auto osmesa = OsmesaExpectation::make(map, sharp);
   ASSERT_TRUE(osmesa) << osmesa.error().message;
   std::mt19937 random(20261122);
@@ -113,19 +116,19 @@ void agree_in(const std::string& name, int poses, double most) {
 }
 
 TEST(OsmesaProperty, HomeIsSeenAsByTheRaster) {
-  agree_in("home", 40, 0.03);
+  agree_in("home", 40, 0.01);
 }
 TEST(OsmesaProperty, PlanarIsSeenAsByTheRaster) {
   agree_in("planar", 40, 0.01);
 }
 TEST(OsmesaProperty, OcclusionIsSeenAsByTheRaster) {
-  agree_in("occlusion", 40, 0.015);
+  agree_in("occlusion", 40, 0.01);
 }
 TEST(OsmesaProperty, SplFieldIsSeenAsByTheRaster) {
   agree_in("spl-field", 40, 0.01);
 }
 TEST(OsmesaProperty, CorridorIsSeenAsByTheRaster) {
-  agree_in("corridor", 40, 0.04);
+  agree_in("corridor", 40, 0.02);
 }
 TEST(OsmesaProperty, PeopleIsSeenAsByTheRaster) {
   agree_in("people", 40, 0.01);
