@@ -37,9 +37,28 @@ hal::Odometry led_on(const hal::Odometry& last, MonoTime stamp) {
 
 void OdometryTrack::add(const hal::Odometry& odometry) {
   if (count_ > 0 && odometry.stamp <= from_newest(0).stamp) return;
-  reports_[next_] = odometry;
+  reports_[next_] = count_ > 0 ? scaled(odometry) : odometry;
+  as_reported_ = odometry;
   next_ = (next_ + 1) % kKept;
   count_ = count_ < kKept ? count_ + 1 : kKept;
+}
+
+// Goes on from the newest by the reported step times the scales: the first report's place is the same with any.
+hal::Odometry OdometryTrack::scaled(const hal::Odometry& odometry) const {
+  const hal::Odometry& before = from_newest(0);
+  const double turned_rad = odometry.heading_rad - as_reported_.heading_rad;
+  const double turned_scaled_rad = scales_.scale_turn * turned_rad;
+  // The way lies half-way between both headings; turned more, it turns along.
+  const double way_turn_rad = before.heading_rad - as_reported_.heading_rad + 0.5 * (turned_scaled_rad - turned_rad);
+  const double dx_m = scales_.scale_forward * (odometry.x_m - as_reported_.x_m);
+  const double dy_m = scales_.scale_forward * (odometry.y_m - as_reported_.y_m);
+  hal::Odometry now = odometry;
+  now.x_m = before.x_m + std::cos(way_turn_rad) * dx_m - std::sin(way_turn_rad) * dy_m;
+  now.y_m = before.y_m + std::sin(way_turn_rad) * dx_m + std::cos(way_turn_rad) * dy_m;
+  now.heading_rad = before.heading_rad + turned_scaled_rad;
+  now.velocity.forward_mps *= scales_.scale_forward;
+  now.velocity.left_radps *= scales_.scale_turn;
+  return now;
 }
 
 std::optional<hal::Odometry> OdometryTrack::at(MonoTime stamp) const {

@@ -6,14 +6,30 @@
 
 #include "hal/drive.h"
 #include "pipeline/geometry/pose.h"
+#include "platform/parameters.h"
 
 namespace cgsr {
 
-/// The base's odometry of the last second, so that an image can be told where the robot was when it was exposed.
+/// By what the base's way and turn are to be multiplied: what `cgsr calibrate odometry` finds.
+struct OdometryScales {
+  double scale_forward = 1.0;
+  double scale_turn = 1.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("scale_forward", self.scale_forward, {0.5, 2.0}, "",
+                 "the base's way times this is the robot's: cgsr calibrate odometry");
+    visit.number("scale_turn", self.scale_turn, {0.5, 2.0}, "", "likewise, its turn");
+  }
+};
+
+/// The base's odometry of the last second, scaled, so that an image can be told where the robot was when it was exposed.
 ///
 /// Threads: one. Allocates nothing.
 class OdometryTrack {
  public:
+  explicit OdometryTrack(const OdometryScales& scales = {}) : scales_(scales) {}
+
   /// Later than all before; what is not is passed by.
   void add(const hal::Odometry& odometry);
 
@@ -30,6 +46,10 @@ class OdometryTrack {
     return reports_[(next_ + kKept - 1 - i) % kKept];
   }
 
+  [[nodiscard]] hal::Odometry scaled(const hal::Odometry& odometry) const;
+
+  OdometryScales scales_;
+  hal::Odometry as_reported_;  ///< the newest
   std::array<hal::Odometry, kKept> reports_{};
   std::size_t next_ = 0;
   std::size_t count_ = 0;

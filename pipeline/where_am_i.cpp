@@ -10,7 +10,8 @@ WhereAmI::WhereAmI(KnownSelf self)
       axle_height_m_(self.axle_height_m),
       localizer_(map_, self.camera, self.localizer),
       tracker_(localizer_, self.X_RC, self.tracking),
-      own_pixels_(std::move(self.own_pixels)) {
+      own_pixels_(std::move(self.own_pixels)),
+      odometry_(self.odometry) {
   tracker_.start(self.start);
 }
 

@@ -18,6 +18,7 @@ struct KnownSelf {
   geometry::Camera camera;  ///< with its lens, in the size of the images that come.
   geometry::Pose X_RC = geometry::Pose::Identity();
   double axle_height_m = 0.24;  ///< about which the base leans.
+  OdometryScales odometry;
   localization::LocalizerParameters localizer;
   localization::PoseTrackerParameters tracking;
   localization::Prior start;  ///< of the camera.

@@ -9,6 +9,7 @@
 #include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
 #include "pipeline/motion_limits.h"
+#include "pipeline/odometry_track.h"
 #include "pipeline/vision_loop.h"
 #include "pipeline/vision_stages.h"
 #include "src/config/color.h"
@@ -100,6 +101,7 @@ struct Robot {
   VisionStages stage;
   Color color;
   RobotLocalization localization;
+  OdometryScales odometry;
   illumination::ProbesParameters probes;
   illumination::LampParameters lamp;
   ShadeStageParameters shade;
@@ -118,6 +120,7 @@ struct Robot {
     visit.section("stage", self.stage, "The schedule: which stage runs in which frame and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
     visit.section("localization", self.localization, "Where the robot is (chapter 4)");
+    visit.section("odometry", self.odometry, "What the base reports of its way, scaled before it carries the pose");
     visit.section("probes", self.probes, "The probe board and how it is looked at (Alg. 5.1)");
     visit.section("lamp", self.lamp, "What is known of lamps, and how observations become one (Eq. 5.1, 5.2)");
     visit.section("shade", self.shade, "What lies in the lamp's shadow (5.2)");

@@ -151,6 +151,7 @@ Result<void> Robot::make_whereabouts(VisionParts& parts) {
   self.camera = *camera_model_;
   self.X_RC = X_RC_;
   self.axle_height_m = known.axle_height_m;
+  self.odometry = config_.odometry;
   self.localizer = known.localizer;
   self.tracking = known.tracker;
   self.start = boot->prior;
