@@ -99,15 +99,20 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
   }
 }
 
-float Alternation::explained_by(std::span<const Match> matches) const {
-  float whole = 0.0F;
-  for (const ProjectedPiece& piece : view_.projected()) whole += 2.0F * piece.half_length * piece.weight;
+void Alternation::judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const {
+  float expected = 0.0F;
+  for (const ProjectedPiece& piece : view_.projected()) expected += 2.0F * piece.half_length * piece.weight;
   float found = 0.0F;
+  float foreseen = 0.0F;
   for (const Match& match : matches) {
     const float scaled = match.effective_distance_px() / kNear_px;
-    found += match.overlap_px() * view_.projected()[match.projected].weight / (1.0F + scaled * scaled);
+    const float length = match.overlap_px() / (1.0F + scaled * scaled);
+    found += length * view_.projected()[match.projected].weight;
+    foreseen += length * perceived.edges()[match.perceived].weight;
   }
-  return whole > 0.0F ? std::min(1.0F, found / whole) : 0.0F;
+  const float both = expected + perceived.whole_length();
+  estimate.explained = expected > 0.0F ? std::min(1.0F, found / expected) : 0.0F;
+  estimate.agreement = both > 0.0F ? std::min(1.0F, (found + foreseen) / both) : 0.0F;
 }
 
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
@@ -146,7 +151,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     ++estimate.rounds;
     estimate.expected = static_cast<int>(view_.projected().size());
     estimate.matches = static_cast<int>(matches.size());
-    estimate.explained = explained_by(matches);
+    judge(matches, perceived, estimate);
     if (!solution.solved) break;
     estimate.solved = true;
     estimate.solution = solution;

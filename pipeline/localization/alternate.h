@@ -31,6 +31,9 @@ struct Estimate {
   int matches = 0;
   float explained =
       0.0F;  ///< share of the expected visible length found, each edge by how sure it is to be perceived, near matches more.
+  /// How much of what is expected was perceived and of what was perceived is expected, 0..1: a pose that expects next to nothing is not right
+  /// because it finds that, nor one that expects an edge everywhere.
+  float agreement = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;
 };
@@ -70,7 +73,7 @@ class Alternation {
 
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
-  [[nodiscard]] float explained_by(std::span<const Match> matches) const;
+  void judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const;
 
   LocalizerParameters parameters_;
   render::Expectation* expectation_;

@@ -66,7 +66,7 @@ struct Correction {
   int matches = 0;                                             ///< pieces of edges that found a segment.
   float rms_px = 0.0F;     ///< of the distances d1 and d2, in pixels of the grey image that was worked on.
   float explained = 0.0F;  ///< share of the expected visible length that was found, 0..1.
-  float lead = 0.0F;       ///< ahead of the second-best pose that differs; 1 when no other was looked at.
+  float lead = 0.0F;       ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
   float evidence = 0.0F;   ///< what the gate judged (gate.h).
   float prior_chi2 = 0.0F;
   int segments = 0;  ///< perceived.

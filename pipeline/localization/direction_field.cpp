@@ -52,6 +52,7 @@ void DirectionField::spread(std::uint8_t* plane) const {
 }
 
 void DirectionField::build(const SegmentTable& perceived) {
+  perceived_px_ = perceived.whole_length();
   std::fill(distance_.begin(), distance_.end(), std::uint8_t{255});
   for (const PerceivedEdge& edge : perceived.edges()) {
     // The two bins that lie nearest: an edge between them is in both.
@@ -72,6 +73,7 @@ void DirectionField::build(const SegmentTable& perceived) {
 
 float DirectionField::score(std::span<const ProjectedPiece> expected) const {
   float sum = 0.0F;
+  float covered_px = 0.0F;
   float whole = 0.0F;
   for (const ProjectedPiece& piece : expected) {
     const float turn = std::atan2(piece.direction.y(), piece.direction.x()) / (2.0F * std::numbers::pi_v<float>);
@@ -90,11 +92,14 @@ float DirectionField::score(std::span<const ProjectedPiece> expected) const {
       const int x = std::clamp(static_cast<int>(std::lround(p.x())) / kCell_px, 0, width_ - 1);
       const int y = std::clamp(static_cast<int>(std::lround(p.y())) / kCell_px, 0, height_ - 1);
       const std::size_t cell = (static_cast<std::size_t>(y) + 1) * stride_ + static_cast<std::size_t>(x) + 1;
-      sum += weight * value_[std::min(first[cell], second[cell])];
+      const float value = value_[std::min(first[cell], second[cell])];
+      sum += weight * value;
+      covered_px += step * value;
       whole += weight;
     }
   }
-  return whole > 0.0F ? sum / whole : 0.0F;
+  // Several expected edges may lie near the same perceived one: it is covered once.
+  return whole > 0.0F ? (sum + std::min(covered_px, perceived_px_)) / (whole + perceived_px_) : 0.0F;
 }
 
 }  // namespace cgsr::localization

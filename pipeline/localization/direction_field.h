@@ -17,7 +17,8 @@ class DirectionField {
   /// Costs about 1.5 million instructions at 320x240.
   void build(const SegmentTable& perceived);
 
-  /// \return 0..1: how much of the expected length has a perceived edge of its direction near by, nearer counting more.
+  /// \return 0..1, as Estimate::agreement: what has an edge of its direction near by, nearer counting more, of the length expected and
+  ///         perceived.
   [[nodiscard]] float score(std::span<const ProjectedPiece> expected) const;
 
  private:
@@ -30,6 +31,7 @@ class DirectionField {
   int height_;
   std::size_t stride_;
   std::size_t plane_size_;
+  float perceived_px_ = 0.0F;
   std::vector<std::uint8_t> distance_;  // thirds of a cell, by bin, with a border of one cell
   std::array<float, 256> value_{};
 };

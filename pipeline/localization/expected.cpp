@@ -19,6 +19,9 @@ constexpr float kLeastRatioFlat = 1.25F;
 constexpr float kLeastRatioCrease = 2.5F;
 constexpr float kSurelySeenContrast = 0.12F;  // encoded luma
 constexpr float kLeastWeight = 0.25F;
+// Where light makes the contrast, or what is behind is not known, the map cannot tell how much there is: such edges are found as often
+// where it says a little as where it says a lot.
+constexpr float kUnknownWeight = 0.6F;
 
 float linear(float encoded) {
   return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
@@ -117,13 +120,17 @@ std::vector<EdgeSides> sides_of(const world::Map& map) {
     const world::Edge& edge = map.edges[i];
     EdgeSides& sides = result[i];
     sides.weight = std::clamp(edge.contrast / kSurelySeenContrast, kLeastWeight, 1.0F);
-    if (edge.sides[0] == world::kNone || edge.sides[1] == world::kNone) continue;
+    if (edge.sides[0] == world::kNone || edge.sides[1] == world::kNone) {
+      sides.weight = kUnknownWeight;
+      continue;
+    }
     const world::Surface& s0 = map.surfaces[edge.sides[0]];
     const world::Surface& s1 = map.surfaces[edge.sides[1]];
     const world::Material& m0 = map.materials[s0.material];
     const world::Material& m1 = map.materials[s1.material];
-    if (!m0.known_color || !m1.known_color) continue;
     const bool flat = std::abs(s0.normal.dot(s1.normal)) > 0.999F;
+    if (!m0.known_color || !m1.known_color || (!flat && s0.material == s1.material)) sides.weight = kUnknownWeight;
+    if (!m0.known_color || !m1.known_color) continue;
     const float ratio = (luminance(m0.color) + 0.01F) / (luminance(m1.color) + 0.01F);
     const float least = flat ? kLeastRatioFlat : kLeastRatioCrease;
     if (ratio > least) sides.brighter = 0;

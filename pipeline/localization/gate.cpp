@@ -10,12 +10,13 @@
 namespace cgsr::localization {
 namespace {
 
-constexpr float kMostExplained = 1.1F;
-constexpr float kMostLead = 0.5F;
-constexpr float kLeadCounts = 0.5F;
-constexpr float kPriorCounts = 0.01F;
+constexpr float kMostLead = 0.3F;  // ahead of a pose that has next to nothing: more of it says no more
+// Agreement that some pose always has: where no rival was found it is the rival.
+constexpr float kChance = 0.2F;
+constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the farther off, the more must speak for it
+constexpr float kChoiceCounts =
+    0.04F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
 constexpr int kLeastExpected = 3;
-constexpr float kLeadMatches = 0.5F;  // of one match's share of what is explained
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -30,22 +31,23 @@ geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParame
   return covariance;
 }
 
-float evidence_of(const Estimate& estimate, float lead) {
-  return std::min(estimate.explained, kMostExplained) + kLeadCounts * std::min(lead, kMostLead) -
-         kPriorCounts * estimate.prior_chi2;
+float evidence_of(const Estimate& estimate, const Standing& standing) {
+  const float lead = std::min({standing.lead, kMostLead, estimate.agreement - kChance});
+  return estimate.agreement + lead - kPriorCounts * estimate.prior_chi2 -
+         kChoiceCounts * static_cast<float>(std::log(std::max(1.0, standing.cells)));
 }
 
-Reason gate(const Estimate& estimate, float lead, const geometry::Matrix6d& covariance,
+Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters) {
   if (estimate.expected < kLeastExpected) return Reason::kNothingExpected;
   if (!estimate.solved || estimate.matches < parameters.matches_least) return Reason::kTooFewMatches;
-  if (estimate.explained < parameters.explained_least) return Reason::kUnexplained;
+  if (!standing && estimate.explained < parameters.explained_tracking) return Reason::kUnexplained;
   if (estimate.solution.rms_px > parameters.rms_most_px) return Reason::kResidual;
   if (estimate.prior_chi2 > parameters.prior_chi2_most) return Reason::kFarFromPrior;
-  // A single match more or less must not decide: with few of them the lead has to be larger.
-  const float lead_of_a_match = kLeadMatches / static_cast<float>(estimate.matches);
-  if (lead < std::max(static_cast<float>(parameters.lead_least), lead_of_a_match)) return Reason::kAmbiguous;
-  if (evidence_of(estimate, lead) < parameters.evidence_least) return Reason::kAmbiguous;
+  if (standing && evidence_of(estimate, *standing) < parameters.evidence_least) {
+    const Standing alone{.lead = kMostLead, .cells = standing->cells};
+    return evidence_of(estimate, alone) < parameters.evidence_least ? Reason::kUnexplained : Reason::kAmbiguous;
+  }
   const double turn_most = parameters.sigma_most_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= parameters.sigma_most_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= turn_most))

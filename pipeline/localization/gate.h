@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "pipeline/localization/alternate.h"
 #include "pipeline/localization/correction.h"
 #include "pipeline/localization/localizer_parameters.h"
@@ -9,11 +11,19 @@ namespace cgsr::localization {
 /// \return the covariance of an estimate: what the matches and the prior leave open, and the map's own error.
 geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParameters& parameters);
 
-/// What speaks for an estimate: how much is explained, how far ahead of the next best pose it is, less how far it is from the prior.
-float evidence_of(const Estimate& estimate, float lead);
+/// How an estimate stands among the poses that a search tried.
+struct Standing {
+  float lead = 0.0F;   ///< in rank, ahead of the next best pose that is another one.
+  double cells = 1.0;  ///< how many poses that differ the prior holds (Search::cells).
+};
+
+/// What speaks for an estimate that a search found: how well image and map agree there, how far ahead of the next best pose it is, less how
+/// far it is from the prior and how many poses there were to choose from: among many one fits by accident.
+float evidence_of(const Estimate& estimate, const Standing& standing);
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
-Reason gate(const Estimate& estimate, float lead, const geometry::Matrix6d& covariance,
+/// \param standing  none: the pose was followed from a narrow prior and no other one was looked at.
+Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters);
 
 }  // namespace cgsr::localization

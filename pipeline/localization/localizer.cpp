@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "pipeline/localization/alternate.h"
@@ -54,9 +55,8 @@ struct Localizer::State {
 
   Correction from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
   [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
-  /// \param bounds  of the gate: a search among many poses asks for more than a pose that is followed.
-  void judge(const Estimate& estimate, float lead, const LocalizerParameters& bounds, Correction& answer) const;
-  [[nodiscard]] LocalizerParameters bounds_of_tracking() const;
+  /// \param standing  none: the pose was followed, not searched for.
+  void judge(const Estimate& estimate, const std::optional<Standing>& standing, Correction& answer) const;
 
   const world::Map* map;
   LocalizerParameters parameters;
@@ -85,25 +85,18 @@ bool Localizer::searching() const {
   return state_->search.running();
 }
 
-LocalizerParameters Localizer::State::bounds_of_tracking() const {
-  LocalizerParameters bounds = parameters;
-  bounds.explained_least = parameters.explained_tracking;
-  bounds.evidence_least = parameters.explained_tracking;  // no other pose was looked at: there is nothing to lead
-  return bounds;
-}
-
-void Localizer::State::judge(const Estimate& estimate, float lead, const LocalizerParameters& bounds,
+void Localizer::State::judge(const Estimate& estimate, const std::optional<Standing>& standing,
                              Correction& answer) const {
   const geometry::Matrix6d covariance = covariance_of(estimate, parameters);
   answer.matches = estimate.matches;
   answer.expected = estimate.expected;
   answer.explained = estimate.explained;
   answer.prior_chi2 = estimate.prior_chi2;
-  answer.lead = lead;
+  answer.lead = standing ? standing->lead : 1.0F;
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
-  answer.evidence = evidence_of(estimate, lead);
+  answer.evidence = standing ? evidence_of(estimate, *standing) : estimate.explained;
   if (parameters.gate) {
-    answer.reason = gate(estimate, lead, covariance, bounds);
+    answer.reason = gate(estimate, standing, covariance, parameters);
   } else if (estimate.solved) {
     answer.reason = Reason::kNone;
   } else {
@@ -140,11 +133,13 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
     return answer;
   }
   if (!parameters.search || shape.widest_px() <= kOneStart_px) {
-    judge(best, 1.0F, bounds_of_tracking(), answer);
+    judge(best, std::nullopt, answer);
     return answer;
   }
   const geometry::Matrix6d metric = alternation.motion_metric(belief.prior.X_WC);
-  const auto rank = [](const Estimate& estimate) { return estimate.solved ? evidence_of(estimate, 0.0F) : -10.0F; };
+  const auto rank = [](const Estimate& estimate) {
+    return estimate.solved ? evidence_of(estimate, Standing{}) : -10.0F;
+  };
   std::array<Estimate, kNearStarts + 1> found;
   found[0] = best;
   options.look_first = true;
@@ -165,7 +160,7 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
     const geometry::Vector6d step = geometry::step_between(best.solution.X_WC, other.solution.X_WC);
     if (step.dot(metric * step) > kNearRival_px * kNearRival_px) lead = std::min(lead, rank(best) - rank(other));
   }
-  judge(settled(best, belief), lead, parameters, answer);
+  judge(settled(best, belief), Standing{.lead = lead}, answer);
   return answer;
 }
 
@@ -202,7 +197,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   }
   if (s.search.running()) {
     if (s.search.go_on(belief, s.perception.edges(), budget)) {
-      s.judge(s.settled(s.search.best(), belief), s.search.lead(), s.parameters, answer);
+      s.judge(s.settled(s.search.best(), belief), Standing{.lead = s.search.lead(), .cells = s.search.cells()}, answer);
     } else {
       answer.reason = Reason::kSearching;
     }

@@ -30,20 +30,18 @@ struct LocalizerParameters {
   double match_radius_least_px = 4.0;
   double track_px = 7.0;
   double start_spacing_px = 12.0;
-  double starts_per_cell = 16.0;
+  double starts_per_cell = 32.0;
   int starts_most = 500;
   int starts_per_image = 8;
   int finalists = 8;
   int neighbours = 40;
   int walks = 4;
   int matches_least = 4;
-  double explained_least = 0.45;
   double explained_tracking = 0.3;
-  double lead_least = 0.02;
-  double evidence_least = 0.6;
+  double evidence_least = 0.45;
   double prior_chi2_most = 25.0;
-  double sigma_most_m = 0.07;
-  double sigma_most_deg = 3.0;
+  double sigma_most_m = 0.1;
+  double sigma_most_deg = 3.5;
   double rms_most_px = 1.35;
   int pieces_most = 1200;
 
@@ -74,11 +72,12 @@ struct LocalizerParameters {
     visit.number("neighbours", self.neighbours, {0, 500}, "", "poses about the best one that are tried against it");
     visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
     visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate");
-    visit.number("explained_least", self.explained_least, {0.0, 1.0}, "", "gate: share of the expected length found");
     visit.number("explained_tracking", self.explained_tracking, {0.0, 1.0}, "",
-                 "gate: the same where a narrow prior is followed: what hides much of the map moves no pose");
-    visit.number("lead_least", self.lead_least, {0.0, 1.0}, "", "gate: ahead of the second-best pose");
-    visit.number("evidence_least", self.evidence_least, {-10.0, 2.0}, "", "gate: explained, lead and prior together");
+                 "gate where a narrow prior is followed: share of the expected length found; what hides much of the "
+                 "map moves no pose");
+    visit.number(
+        "evidence_least", self.evidence_least, {-10.0, 2.0}, "",
+        "gate where several poses were tried: agreement of image and map, lead, less distance and width of the prior");
     visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
     visit.number("sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m", "gate: of the position's worst direction");
     visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "gate: of the worst axis of turning");

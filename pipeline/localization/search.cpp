@@ -94,7 +94,7 @@ Search::Search(const LocalizerParameters& parameters, Alternation& alternation, 
 }
 
 float Search::rank_of(const Estimate& estimate) {
-  return estimate.solved ? estimate.explained - 0.01F * estimate.prior_chi2 : -10.0F;
+  return estimate.solved ? estimate.agreement - 0.01F * estimate.prior_chi2 : -10.0F;
 }
 
 double Search::motion_between(const Pose& a, const Pose& b) const {
@@ -108,12 +108,12 @@ void Search::begin(const Belief& belief) {
   alternation_->project(belief.prior.X_WC);
   metric_ = alternation_->motion_metric(belief.prior.X_WC);
   shape_ = PriorShape::of(belief.prior.covariance, metric_);
-  double cells = 1.0;
+  cells_ = 1.0;
   for (int i = 0; i < 6; ++i) {
-    if (shape_.motion_px[i] > kSpread_px) cells *= std::max(1.0, shape_.motion_px[i] / parameters_.start_spacing_px);
+    if (shape_.motion_px[i] > kSpread_px) cells_ *= std::max(1.0, shape_.motion_px[i] / parameters_.start_spacing_px);
   }
   start_count_ = static_cast<std::uint32_t>(
-      std::min(static_cast<double>(parameters_.starts_most), std::ceil(parameters_.starts_per_cell * cells)));
+      std::min(static_cast<double>(parameters_.starts_most), std::ceil(parameters_.starts_per_cell * cells_)));
   next_start_ = 0;
   next_finalist_ = 0;
   next_neighbour_ = 0;

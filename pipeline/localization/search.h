@@ -41,6 +41,8 @@ class Search {
 
   [[nodiscard]] const Estimate& best() const { return best_; }
   [[nodiscard]] float lead() const { return lead_; }
+  /// How many poses that differ by start_spacing_px the prior holds.
+  [[nodiscard]] double cells() const { return cells_; }
   [[nodiscard]] int starts() const { return static_cast<int>(next_start_); }
 
  private:
@@ -65,6 +67,7 @@ class Search {
   geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
   PriorShape shape_;
   std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
+  double cells_ = 1.0;
   std::uint32_t start_count_ = 0;
   std::uint32_t next_start_ = 0;
   std::uint32_t next_finalist_ = 0;

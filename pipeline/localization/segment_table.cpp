@@ -5,6 +5,13 @@
 #include <numbers>
 
 namespace cgsr::localization {
+namespace {
+
+// Shadows, reflections and noise make weak edges; the things in a map mostly make strong ones.
+constexpr float kSureContrast = 30.0F;  // grey levels
+constexpr float kLeastWeight = 0.25F;
+
+}  // namespace
 
 SegmentTable::SegmentTable(std::size_t capacity) : capacity_(capacity) {
   added_.reserve(capacity);
@@ -45,12 +52,15 @@ void SegmentTable::finish() {
   x_.resize(sum);
   y_.resize(sum);
   half_length_.resize(sum);
+  whole_length_ = 0.0F;
   for (const PerceivedEdge& edge : added_) {
     const std::size_t i = next[static_cast<std::size_t>(bin_of(edge.direction))]++;
     sorted_[i] = edge;
+    sorted_[i].weight = std::clamp(edge.contrast / kSureContrast, kLeastWeight, 1.0F);
     x_[i] = edge.middle.x();
     y_[i] = edge.middle.y();
     half_length_[i] = edge.half_length;
+    whole_length_ += 2.0F * edge.half_length * sorted_[i].weight;
   }
 }
 

@@ -16,6 +16,8 @@ struct PerceivedEdge {
   float half_length = 0.0F;
   float contrast = 0.0F;  ///< grey levels.
   float sigma_px = 0.1F;  ///< of the line, across.
+  float weight =
+      1.0F;  ///< how sure it is to be an edge of things, not of their light, 0..1; from the contrast, by SegmentTable.
 
   [[nodiscard]] Eigen::Vector2f normal() const { return {-direction.y(), direction.x()}; }
 };
@@ -39,6 +41,8 @@ class SegmentTable {
 
   /// Index of the first edge whose bin is `bin`; kBins: size().
   [[nodiscard]] std::size_t first_of(int bin) const { return first_[static_cast<std::size_t>(bin)]; }
+  /// Of all edges together, each by its weight, pixels.
+  [[nodiscard]] float whole_length() const { return whole_length_; }
   static int bin_of(const Eigen::Vector2f& direction);
 
   [[nodiscard]] const float* x() const { return x_.data(); }
@@ -52,6 +56,7 @@ class SegmentTable {
   std::vector<float> x_;
   std::vector<float> y_;
   std::vector<float> half_length_;
+  float whole_length_ = 0.0F;
   std::array<std::size_t, kBins + 1> first_{};
 };
 

@@ -1,5 +1,7 @@
 #include "pipeline/localization/direction_field.h"
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 namespace cgsr::localization {
@@ -21,7 +23,8 @@ class Field : public ::testing::Test {
     PerceivedEdge edge;
     edge.middle = {160, 120};
     edge.direction = {1, 0};
-    edge.half_length = 50.0F;
+    edge.half_length = 30.0F;
+    edge.contrast = 60.0F;
     table.add(edge);
     table.finish();
     field_.build(table);
@@ -50,6 +53,23 @@ TEST_F(Field, CountsOnlyEdgesOfTheDirection) {
   EXPECT_LT(score(160, 120, {1, 0}, -1), 0.05F) << "the brighter side is the other one";
   EXPECT_GT(score(160, 120, {-1, 0}, -1), 0.95F);
   EXPECT_GT(score(160, 120, {-1, 0}, 0), 0.95F) << "not known";
+}
+
+// A pose that expects one edge and finds it is not as good as one that foresees all there is.
+TEST_F(Field, CountsWhatIsSeenAndNotExpected) {
+  SegmentTable table(4);
+  for (const float y : {120.0F, 180.0F}) {
+    PerceivedEdge edge;
+    edge.middle = {160, y};
+    edge.half_length = 30.0F;
+    edge.contrast = 60.0F;
+    table.add(edge);
+  }
+  table.finish();
+  field_.build(table);
+  const std::array both{piece(160, 120, {1, 0}, 1), piece(160, 180, {1, 0}, 1)};
+  EXPECT_NEAR(field_.score({both.data(), 1}), 2.0F / 3.0F, 0.03F);
+  EXPECT_GT(field_.score(both), 0.95F);
 }
 
 TEST_F(Field, OfNothingIsNothing) {

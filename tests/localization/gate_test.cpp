@@ -1,5 +1,7 @@
 #include "pipeline/localization/gate.h"
 
+#include <optional>
+
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
 
@@ -12,15 +14,16 @@ Estimate good() {
   estimate.expected = 20;
   estimate.matches = 15;
   estimate.explained = 0.8F;
+  estimate.agreement = 0.7F;
   estimate.prior_chi2 = 4.0F;
   estimate.solution.rms_px = 0.5;
   estimate.solution.information = geometry::Matrix6d::Identity() * 1e6;
   return estimate;
 }
 
-Reason judged(const Estimate& estimate, float lead = 0.3F) {
+Reason judged(const Estimate& estimate, const std::optional<Standing>& standing = Standing{0.2F, 2.0}) {
   const LocalizerParameters parameters;
-  return gate(estimate, lead, covariance_of(estimate, parameters), parameters);
+  return gate(estimate, standing, covariance_of(estimate, parameters), parameters);
 }
 
 TEST(Gate, LetsThroughWhatIsSure) {
@@ -38,21 +41,33 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.solved = false;
   EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
   estimate = good();
-  estimate.explained = 0.3F;
-  EXPECT_EQ(judged(estimate), Reason::kUnexplained);
+  estimate.agreement = 0.1F;
+  EXPECT_EQ(judged(estimate), Reason::kUnexplained) << "no lead makes that enough";
+  estimate = good();
+  estimate.explained = 0.2F;
+  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kUnexplained) << "the followed pose";
   estimate = good();
   estimate.solution.rms_px = 3.0;
   EXPECT_EQ(judged(estimate), Reason::kResidual);
   estimate = good();
   estimate.prior_chi2 = 30.0F;
   EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
-  EXPECT_EQ(judged(good(), 0.001F), Reason::kAmbiguous);
   estimate = good();
-  estimate.matches = 5;
-  EXPECT_EQ(judged(estimate, 0.05F), Reason::kAmbiguous) << "one match of five decides";
+  estimate.agreement = 0.5F;
+  EXPECT_EQ(judged(estimate, Standing{0.001F, 2.0}), Reason::kAmbiguous);
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
+}
+
+// What is enough near a narrow prior is not enough far away in a wide one, where something always fits.
+TEST(Gate, AsksForMoreWhereThereIsMoreToChooseFrom) {
+  Estimate estimate = good();
+  estimate.agreement = 0.5F;
+  EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kNone);
+  EXPECT_EQ(judged(estimate, Standing{0.1F, 200.0}), Reason::kAmbiguous);
+  estimate.prior_chi2 = 12.0F;
+  EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kAmbiguous);
 }
 
 TEST(Gate, CovarianceHoldsTheMapsOwnError) {
