@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "pipeline/color/ball_circle.h"
 #include "pipeline/color/color_model.h"
 #include "pipeline/color/search_types.h"
 #include "pipeline/color/shade_mask.h"
@@ -63,19 +64,6 @@ struct IntegratedParameters {
     visit.section("search", self.search, "The two searches over the image");
     visit.section("ball", self.ball, "Its shape");
   }
-};
-
-/// A circle in the camera image.
-struct Circle {
-  double x_px = 0.0;
-  double y_px = 0.0;
-  double radius_px = 0.0;
-};
-
-/// Diameters that the ball's image can have.
-struct SizeRange {
-  double least_px = 0.0;
-  double most_px = 0.0;
 };
 
 /// What a ball of this size shows at these distances. \param focal_px  mean of fx and fy.

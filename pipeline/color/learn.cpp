@@ -75,24 +75,6 @@ Distinctiveness judge(const std::vector<View>& views) {
   return distinctiveness_of(all);
 }
 
-// Shares to whole numbers that sum to kHistogramMass: rounded down, what is missing goes to the largest remainders.
-void append_counts(const std::vector<double>& shares, std::vector<std::uint16_t>& rows) {
-  std::vector<std::size_t> order(shares.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto scaled = [&](std::size_t bin) { return shares[bin] * kHistogramMass; };
-  const auto remainder = [&](std::size_t bin) { return scaled(bin) - std::floor(scaled(bin)); };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return remainder(a) > remainder(b); });
-
-  const std::size_t first = rows.size();
-  int missing = kHistogramMass;
-  for (std::size_t bin = 0; bin < shares.size(); ++bin) {
-    rows.push_back(static_cast<std::uint16_t>(std::floor(scaled(bin))));
-    missing -= rows.back();
-  }
-  for (std::size_t i = 0; i < order.size() && missing > 0; ++i, --missing) ++rows[first + order[i]];
-}
-
 // Lines 18-25 for one kind of colours (the object's, or those around it): per light the mean of the samples' histograms.
 template <class Colors>
 std::vector<std::uint16_t> histogram_rows(const std::vector<View>& views, const std::vector<Light>& lights,
@@ -131,6 +113,23 @@ std::string words_for(const Distinctiveness& before, const Distinctiveness& afte
 }
 
 }  // namespace
+
+void append_counts(const std::vector<double>& shares, std::vector<std::uint16_t>& rows) {
+  std::vector<std::size_t> order(shares.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto scaled = [&](std::size_t bin) { return shares[bin] * kHistogramMass; };
+  const auto remainder = [&](std::size_t bin) { return scaled(bin) - std::floor(scaled(bin)); };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return remainder(a) > remainder(b); });
+
+  const std::size_t first = rows.size();
+  int missing = kHistogramMass;
+  for (std::size_t bin = 0; bin < shares.size(); ++bin) {
+    rows.push_back(static_cast<std::uint16_t>(std::floor(scaled(bin))));
+    missing -= rows.back();
+  }
+  for (std::size_t i = 0; i < order.size() && missing > 0; ++i, --missing) ++rows[first + order[i]];
+}
 
 Light take_out_light(std::span<imaging::Rgb> colors, double assumed) {
   Light light{assumed, assumed, assumed};

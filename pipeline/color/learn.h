@@ -68,4 +68,8 @@ Light take_out_light(std::span<imaging::Rgb> colors, double assumed);
 std::vector<double> histogram_under(std::span<const imaging::Rgb> textures, const Light& light,
                                     const imaging::ColorBins& bins);
 
+/// Adds a row to a model's histograms: shares that sum to 1 as whole numbers that sum to kHistogramMass. Rounded down, what is missing goes to
+/// the largest remainders.
+void append_counts(const std::vector<double>& shares, std::vector<std::uint16_t>& rows);
+
 }  // namespace cgsr::color

@@ -15,19 +15,24 @@ Cost cost_of(const nlohmann::json& figures) {
 
 }  // namespace
 
-Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
-                             const std::vector<std::string>& film) {
+Result<Counted> count_lab(const std::vector<std::string>& command, const std::string& config_file) {
   const auto scratch = scratch_json();
-  std::vector<std::string> words{
-      CGSR_COUNT_TOOL, "--json",    scratch.string(),    "--", std::filesystem::read_symlink("/proc/self/exe").string(),
-      "follow",        "--tracker", std::string(tracker)};
+  std::vector<std::string> words{CGSR_COUNT_TOOL, "--json", scratch.string(), "--",
+                                 std::filesystem::read_symlink("/proc/self/exe").string()};
+  words.insert(words.end(), command.begin(), command.end());
   if (!config_file.empty()) words.insert(words.end(), {"--config", config_file});
-  words.insert(words.end(), film.begin(), film.end());
   const auto result = run_for_json(words, scratch);
   if (!result) return tl::unexpected(result.error());
   Counted counted{{}, cost_of(result->at("image")), result->at("images").get<int>()};
   for (const auto& [name, figures] : result->at("stages").items()) counted.stages[name] = cost_of(figures);
   return counted;
+}
+
+Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
+                             const std::vector<std::string>& film) {
+  std::vector<std::string> words{"follow", "--tracker", std::string(tracker)};
+  words.insert(words.end(), film.begin(), film.end());
+  return count_lab(words, config_file);
 }
 
 }  // namespace cgsr::lab

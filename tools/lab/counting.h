@@ -28,4 +28,7 @@ struct Counted {
 Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
                              const std::vector<std::string>& film);
 
+/// The same of any command of this program. \param words  the command and its options, without `--config`.
+Result<Counted> count_lab(const std::vector<std::string>& words, const std::string& config_file);
+
 }  // namespace cgsr::lab

@@ -24,6 +24,8 @@ std::span<const Experiment> experiments() {
       Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
       Experiment{"home-round", "Three minutes through the simulated home on wheels that slip", true, home_round},
       Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
+      Experiment{"shaded-ball", "A ball in light and shade, with the mask of shade and without (5.4.3)", true,
+                 shaded_ball},
       Experiment{"real-localization", "Chapter 4 on a cube, a desk and ViSP's castle", true, real_localization},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };

@@ -52,5 +52,6 @@ Result<Report> false_corrections(const Setting& setting);
 Result<Report> home_round(const Setting& setting);
 Result<Report> closed_loop(const Setting& setting);
 Result<Report> table_5_1(const Setting& setting);
+Result<Report> shaded_ball(const Setting& setting);
 
 }  // namespace cgsr::lab

@@ -12,6 +12,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "src/config/load.h"
+#include "tools/lab/ball_follower.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/trackers.h"
 
@@ -143,6 +144,21 @@ int follow_film(const FilmOptions& options) {
   return write_file(options.csv, text) ? 0 : complain({fmt::format("cannot write {}", options.csv)});
 }
 
+struct BallOptions {
+  std::string config, input;
+  double focal_px = 600.0;
+  bool without_mask = false;
+};
+
+int follow_ball_film(const BallOptions& options) {
+  const auto configuration = config::load_color(options.config);
+  if (!configuration) return complain(configuration.error());
+  const auto found = follow_ball(options.input, !options.without_mask, options.focal_px, *configuration);
+  if (!found) return complain(found.error());
+  fmt::print("found in {} images\n", *found);
+  return 0;
+}
+
 int save_scenes(const FilmOptions& options) {
   const auto saved = film_of(options, "").and_then([&](const Film& film) { return save_film(film, options.output); });
   return saved ? 0 : complain(saved.error());
@@ -193,10 +209,17 @@ int main(int argc, char** argv) {
   CLI::App* scenes_command = app.add_subcommand("scenes", "write a generated film as images and truth");
   scenes_command->add_option("--output", film_options.output)->required();
   add_film_options(*scenes_command, film_options);
+  BallOptions ball_options;
+  CLI::App* ball_command = app.add_subcommand("follow-ball", "chapter 5's tracker over a folder with a mask of shade");
+  ball_command->add_option("--input", ball_options.input, "folder with img/, groundtruth.txt and mask.png")->required();
+  ball_command->add_option("--focal", ball_options.focal_px, "of the camera, in pixels")->capture_default_str();
+  ball_command->add_flag("--without-mask", ball_options.without_mask, "search dark histograms everywhere");
+  ball_command->add_option("--config", ball_options.config, "a robot's file, for its section [color]");
   CLI11_PARSE(app, argc, argv);
 
   try {
     if (*follow_command) return follow_film(film_options);
+    if (*ball_command) return follow_ball_film(ball_options);
     if (*scenes_command) return save_scenes(film_options);
     return reproduce(reproduce_options);
   } catch (const std::exception& error) {  // OpenCV's, of a defective picture

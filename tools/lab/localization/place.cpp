@@ -49,16 +49,21 @@ geometry::Camera camera_of(const sim::CameraModel& c) {
   return {c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2, c.k3};
 }
 
+Result<world::Map> map_of(const sim::Scene& measured) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-lab-{}-map", getpid());
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  auto written = sim::write_map(measured, folder / "map.obj", "a measured copy");
+  auto map = written ? world::load_map(folder / "map.obj") : tl::unexpected(written.error());
+  std::filesystem::remove_all(folder, ignored);
+  return map;
+}
+
 Result<Survey> survey(const Place& place, const sim::CalibrationErrors& errors, std::uint32_t seed,
                       const std::function<void(sim::Scene&)>& change) {
   sim::CalibratedCopy copy = sim::calibrated_copy(place.scene(), 0, errors, seed);
   if (change) change(copy.map);
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-lab-{}-map", getpid());
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  auto written = sim::write_map(copy.map, folder / "map.obj", "a measured copy");
-  auto map = written ? world::load_map(folder / "map.obj") : tl::unexpected(written.error());
-  std::filesystem::remove_all(folder, ignored);
+  auto map = map_of(copy.map);
   if (!map) return tl::unexpected(map.error());
   return Survey{camera_of(copy.camera), copy.X_RC, std::move(*map)};
 }

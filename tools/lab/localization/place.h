@@ -67,6 +67,9 @@ struct Survey {
 Result<Survey> survey(const Place& place, const sim::CalibrationErrors& errors, std::uint32_t seed,
                       const std::function<void(sim::Scene&)>& change = {});
 
+/// \return the vision's map of a measured scene: through the file that `cgsr sim export` writes and the vision's own loader.
+Result<world::Map> map_of(const sim::Scene& measured);
+
 /// \return the camera in the vision's words.
 geometry::Camera camera_of(const sim::CameraModel& camera);
 

@@ -1,0 +1,122 @@
+#include "pipeline/color/ball_circle.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "tests/color/ball_scene.h"
+
+namespace cgsr::color {
+namespace {
+
+constexpr SizeRange kSizes{12.0, 90.0};
+constexpr std::array kFactors{0.25, 0.4, 0.55};
+
+const BallModel& model() {
+  static const BallModel kModel = make_ball_model(test::ball_model(), kFactors).value();
+  return kModel;
+}
+
+double unit(std::mt19937& random) {
+  return static_cast<double>(random() >> 8) / (1 << 24);
+}
+
+TEST(BallCircleProperty, FindsTheCircleFromAnyPlaceOnTheBall) {
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 60; ++trial) {
+    const Circle ball{60.0 + 200.0 * unit(random), 50.0 + 140.0 * unit(random), 8.0 + 30.0 * unit(random)};
+    auto painting = test::ball_room();
+    test::paint_ball(painting, ball, 1.0);
+    const BallPixels pixels{painting.photograph(1.5, random()), model().of_code.data(), {}};
+    const double turn = 6.283 * unit(random);
+    const double out = 0.6 * ball.radius_px * std::sqrt(unit(random));
+    const CircleFit fit =
+        fit_circle(pixels, ball.x_px + out * std::cos(turn), ball.y_px + out * std::sin(turn), kSizes);
+    EXPECT_GT(fit.agreement, 0.8) << trial;
+    EXPECT_GT(fit.inside, 0.85) << trial;
+    EXPECT_LT(fit.around, 0.2) << trial;
+    const double near_px = 0.4 + 0.015 * ball.radius_px;
+    EXPECT_NEAR(fit.circle.x_px, ball.x_px, near_px) << trial;
+    EXPECT_NEAR(fit.circle.y_px, ball.y_px, near_px) << trial;
+    EXPECT_NEAR(fit.circle.radius_px, ball.radius_px, near_px) << trial;
+  }
+}
+
+TEST(BallCircle, ASquareOfTheSameColourIsNone) {
+  auto painting = test::ball_room();
+  painting.fill({100, 60, 40, 40}, test::kOrange);
+  const BallPixels pixels{painting.photograph(1.5, 3), model().of_code.data(), {}};
+  EXPECT_LT(fit_circle(pixels, 118, 82, kSizes).agreement, 0.6);
+}
+
+TEST(BallCircle, AStripeOrAWideSurfaceIsNone) {
+  auto painting = test::ball_room();
+  painting.fill({0, 60, 320, 24}, test::kOrange);
+  const ImageView stripe = painting.photograph(1.5, 3);
+  const CircleFit in_stripe = fit_circle({stripe, model().of_code.data(), {}}, 150, 72, kSizes);
+  EXPECT_TRUE(in_stripe.agreement < 0.6 || in_stripe.around > 0.3) << in_stripe.agreement << ' ' << in_stripe.around;
+  painting.fill({0, 0, 320, 240}, test::kOrange);
+  EXPECT_LT(fit_circle({painting.photograph(1.5, 3), model().of_code.data(), {}}, 150, 100, kSizes).agreement, 0.3);
+}
+
+TEST(BallCircle, SizesThatCannotBeAreNoBall) {
+  const Circle ball{150.0, 100.0, 20.0};
+  auto painting = test::ball_room();
+  test::paint_ball(painting, ball, 1.0);
+  const BallPixels pixels{painting.photograph(1.5, 3), model().of_code.data(), {}};
+  EXPECT_GT(fit_circle(pixels, 150, 100, {30.0, 50.0}).agreement, 0.8);
+  EXPECT_LT(fit_circle(pixels, 150, 100, {60.0, 90.0}).agreement, 0.3);
+  EXPECT_LT(fit_circle(pixels, 150, 100, {10.0, 25.0}).agreement, 0.3);
+}
+
+TEST(BallCircle, HalfOutsideTheImageOrHalfHidden) {
+  const Circle ball{4.0, 100.0, 20.0};
+  auto painting = test::ball_room();
+  test::paint_ball(painting, ball, 1.0);
+  const CircleFit cut = fit_circle({painting.photograph(1.5, 3), model().of_code.data(), {}}, 8, 100, kSizes);
+  EXPECT_GT(cut.agreement, 0.7);
+  EXPECT_NEAR(cut.circle.radius_px, 20.0, 2.0);
+
+  const Circle other{150.0, 100.0, 20.0};
+  auto second = test::ball_room();
+  test::paint_ball(second, other, 1.0);
+  second.fill({158, 40, 20, 120}, {0.2, 0.2, 0.3});
+  const CircleFit hidden = fit_circle({second.photograph(1.5, 3), model().of_code.data(), {}}, 145, 100, kSizes);
+  EXPECT_GT(hidden.agreement, 0.5);
+  EXPECT_NEAR(hidden.circle.radius_px, 20.0, 2.0);
+}
+
+// Dark colours count inside the mask alone.
+TEST(BallCircle, TheMaskSaysWhereDarkColoursCount) {
+  const Circle in_shade{240.0, 180.0, 18.0};
+  const Circle outside{80.0, 60.0, 18.0};
+  auto painting = test::ball_room(0.45);
+  test::paint_ball(painting, in_shade, 0.45);
+  test::paint_ball(painting, outside, 0.3);
+  const ImageView image = painting.photograph(1.5, 3);
+  const test::QuarterMask mask;
+  const BallPixels with{image, model().of_code.data(), mask.view()};
+  const BallPixels without{image, model().of_code.data(), {}};
+  EXPECT_GT(fit_circle(with, 240, 180, kSizes).agreement, 0.7);
+  EXPECT_LT(fit_circle(with, 80, 60, kSizes).inside, 0.6);
+  EXPECT_GT(fit_circle(without, 80, 60, kSizes).inside, 0.9);
+  EXPECT_GT(fit_circle(without, 80, 60, kSizes).agreement, 0.7);
+  EXPECT_GT(shade_share(with, in_shade), 0.99);
+  EXPECT_EQ(shade_share(with, outside), 0.0);
+  EXPECT_NEAR(shade_share(with, {160.0, 180.0, 18.0}), 0.5, 0.1);
+}
+
+TEST(BallModelFault, SaysWhatCannotBe) {
+  ColorModel model = test::ball_model();
+  EXPECT_FALSE(make_ball_model(model, {}).has_value());
+  EXPECT_FALSE(make_ball_model(model, std::array{0.0}).has_value());
+  EXPECT_FALSE(make_ball_model(model, std::array{1.5}).has_value());
+  EXPECT_FALSE(make_ball_model(model, std::array{0.1, 0.2, 0.3, 0.4, 0.5}).has_value()) << "135 lights";
+  model.samples.clear();
+  EXPECT_FALSE(make_ball_model(model, kFactors).has_value());
+}
+
+}  // namespace
+}  // namespace cgsr::color

@@ -1,0 +1,214 @@
+#include "pipeline/color/integrated_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <random>
+
+#include "tests/color/ball_scene.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cgsr::color {
+namespace {
+
+constexpr Circle kInLight{90.0, 55.0, 15.0};
+constexpr Circle kInShade{240.0, 185.0, 15.0};
+constexpr double kShade = 0.45;
+constexpr double kFocal_px = 300.0;  // a ball of 20 cm at 2 m: 30 px
+
+IntegratedTracker tracker(const IntegratedParameters& parameters = {}) {
+  return IntegratedTracker::create(test::ball_model(), parameters, test::kBallWidth_px, test::kBallHeight_px, kFocal_px)
+      .value();
+}
+
+test::Painting with_ball(const Circle& circle, double factor) {
+  auto painting = test::ball_room(kShade);
+  test::paint_ball(painting, circle, factor);
+  return painting;
+}
+
+double overlap(const Box& a, const Box& b) {
+  const double shared = intersection(a, b).area();
+  return shared / (a.area() + b.area() - shared);
+}
+
+class Bench {
+ public:
+  explicit Bench(const IntegratedParameters& parameters = {}) : tracker_(tracker(parameters)) {}
+  BallSighting look(test::Painting painting, const ShadeMaskView& mask) {
+    UnlimitedBudget budget;
+    return tracker_.track(painting.photograph(1.5, ++seed_), mask, budget);
+  }
+
+ private:
+  IntegratedTracker tracker_;
+  std::uint32_t seed_ = 100;
+};
+
+TEST(IntegratedTracker, FindsTheBallInTheLight) {
+  const test::QuarterMask mask;
+  for (const bool with_mask : {true, false}) {
+    Bench bench;
+    const auto seen = bench.look(with_ball(kInLight, 1.0), with_mask ? mask.view() : ShadeMaskView{});
+    ASSERT_TRUE(seen.found) << with_mask;
+    EXPECT_EQ(seen.mask_used, with_mask);
+    EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
+    EXPECT_FALSE(seen.dark);
+    EXPECT_TRUE(seen.exact);
+    EXPECT_GT(seen.light.r, 0.55);
+  }
+}
+
+TEST(IntegratedTracker, FindsTheBallInShadeInsideTheMask) {
+  const test::QuarterMask mask;
+  Bench bench;
+  const auto seen = bench.look(with_ball(kInShade, kShade), mask.view());
+  ASSERT_TRUE(seen.found);
+  EXPECT_GT(overlap(seen.box, test::around(kInShade)), 0.85);
+  EXPECT_TRUE(seen.dark);
+  EXPECT_GT(seen.shade_share, 0.99);
+  EXPECT_LT(seen.light.r, 0.56);
+}
+
+// A brown ball in the light looks like an orange one in shade.
+TEST(IntegratedTracker, ABrownBallInTheLightIsFoundWithoutAMaskAlone) {
+  const test::QuarterMask mask;
+  Bench with_mask;
+  Bench without;
+  for (int i = 0; i < 10; ++i) {
+    const Circle moved{kInLight.x_px + 3 * i, kInLight.y_px, kInLight.radius_px};
+    EXPECT_FALSE(with_mask.look(with_ball(moved, kShade), mask.view()).found) << i;
+    const auto seen = without.look(with_ball(moved, kShade), {});
+    ASSERT_TRUE(seen.found) << i << ": this test could not fail";
+    EXPECT_FALSE(seen.mask_used);
+    EXPECT_TRUE(seen.dark);
+  }
+}
+
+TEST(IntegratedTracker, TheMaskSavesWork) {
+  const test::QuarterMask mask;
+  Bench with_mask;
+  Bench without;
+  const auto less = with_mask.look(with_ball(kInLight, 1.0), mask.view());
+  const auto more = without.look(with_ball(kInLight, 1.0), {});
+  EXPECT_EQ(less.bright_windows, more.bright_windows);
+  EXPECT_EQ(less.bright_examined, more.bright_examined);
+  EXPECT_LT(less.dark_windows, more.dark_windows / 2);
+  const std::vector<std::uint8_t> lit(12, 0);
+  Bench all_lit;
+  const auto least = all_lit.look(with_ball(kInLight, 1.0), {lit.data(), 4, 3, 4});
+  EXPECT_TRUE(least.mask_used);
+  EXPECT_EQ(least.dark_windows, 0);
+  EXPECT_TRUE(least.found);
+}
+
+TEST(IntegratedTrackerFault, AMaskThatCannotBeUsedIsNone) {
+  const std::vector<std::uint8_t> cells(400 * 300, 0);
+  Bench bench;
+  EXPECT_FALSE(bench.look(with_ball(kInLight, 1.0), {cells.data(), 400, 300, 400}).mask_used) << "finer than the image";
+  EXPECT_FALSE(bench.look(with_ball(kInLight, 1.0), {cells.data(), 40, 30, 20}).mask_used) << "rows that overlap";
+  EXPECT_FALSE(bench.look(with_ball(kInLight, 1.0), {nullptr, 40, 30, 40}).mask_used);
+}
+
+// Out of the light into the shade: in between half of the ball is bright, half of it dark.
+TEST(IntegratedTracker, FollowsTheBallIntoTheShade) {
+  const test::QuarterMask mask;
+  Bench bench;
+  for (int i = 0; i < 50; ++i) {
+    const Circle circle{100.0 + 3.0 * i, 185.0, 15.0};
+    auto painting = with_ball(circle, 1.0);
+    auto shaded = with_ball(circle, kShade);
+    for (int y = 120; y < test::kBallHeight_px; ++y) {
+      for (int x = test::kBallWidth_px / 2; x < test::kBallWidth_px; ++x) painting.at(x, y) = shaded.at(x, y);
+    }
+    const auto seen = bench.look(painting, mask.view());
+    ASSERT_TRUE(seen.found) << i;
+    EXPECT_GT(overlap(seen.box, test::around(circle)), 0.75) << i;
+  }
+}
+
+TEST(IntegratedTracker, LosesWhatIsGoneAndFindsItElsewhere) {
+  const test::QuarterMask mask;
+  Bench bench;
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(bench.look(with_ball(kInLight, 1.0), mask.view()).found);
+  for (int i = 0; i < 6; ++i) EXPECT_FALSE(bench.look(test::ball_room(kShade), mask.view()).found) << i;
+  const auto seen = bench.look(with_ball({250.0, 60.0, 22.0}, 1.0), mask.view());
+  ASSERT_TRUE(seen.found);
+  EXPECT_NEAR(seen.circle.radius_px, 22.0, 1.5);
+}
+
+TEST(IntegratedTracker, AJumpIsFollowedAtOnce) {
+  const test::QuarterMask mask;
+  Bench bench;
+  for (int i = 0; i < 12; ++i) {
+    const Circle circle = i % 2 == 0 ? kInLight : Circle{250.0, 60.0, 12.0};
+    const auto seen = bench.look(with_ball(circle, 1.0), mask.view());
+    ASSERT_TRUE(seen.found) << i;
+    EXPECT_GT(overlap(seen.box, test::around(circle)), 0.75) << i;
+  }
+}
+
+TEST(IntegratedTracker, ASquareOrAStripeInItsColourIsNotTheBall) {
+  const test::QuarterMask mask;
+  Bench bench;
+  for (int i = 0; i < 4; ++i) {
+    auto painting = test::ball_room(kShade);
+    painting.fill({60.0 + 5 * i, 40, 34, 34}, test::kOrange);
+    painting.fill({0, 150, 120, 26}, test::kOrange);
+    EXPECT_FALSE(bench.look(painting, mask.view()).found) << i;
+  }
+}
+
+TEST(IntegratedTracker, ABudgetEndsTheSearchAndIsSaid) {
+  class Budget final : public WorkBudget {
+   public:
+    bool grant() override { return left_-- > 0; }
+
+   private:
+    int left_ = 3;
+  } budget;
+  IntegratedTracker tight = tracker();
+  const test::QuarterMask mask;
+  auto painting = with_ball(kInLight, 1.0);
+  EXPECT_FALSE(tight.track(painting.photograph(1.5, 3), mask.view(), budget).exact);
+}
+
+TEST(IntegratedTrackerFault, ImagesThatCannotBeSearchedGiveNothing) {
+  IntegratedTracker one = tracker();
+  UnlimitedBudget budget;
+  const std::vector<std::uint8_t> grey(640 * 480, 100);
+  EXPECT_FALSE(one.track({grey.data(), 320, 240, 320, PixelFormat::kGrey8}, {}, budget).found);
+  EXPECT_FALSE(one.track({}, {}, budget).found);
+  EXPECT_FALSE(one.track({grey.data(), 640, 240, 1280, PixelFormat::kYuyv}, {}, budget).found) << "too large";
+}
+
+TEST(IntegratedTrackerFault, SizesThatCannotBe) {
+  IntegratedParameters parameters;
+  parameters.ball.nearest_m = 3.0;
+  parameters.ball.farthest_m = 2.0;
+  EXPECT_FALSE(IntegratedTracker::create(test::ball_model(), parameters, 320, 240, kFocal_px).has_value());
+}
+
+TEST(IntegratedTrackerAlloc, TrackTakesNoMemory) {
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "this build does not count allocations";
+  IntegratedTracker one = tracker();
+  UnlimitedBudget budget;
+  const test::QuarterMask mask;
+  auto light = with_ball(kInLight, 1.0);
+  auto shade = with_ball(kInShade, kShade);
+  auto nothing = test::ball_room(kShade);
+  const ImageView a = light.photograph(1.5, 3);
+  const ImageView b = shade.photograph(1.5, 4);
+  const ImageView c = nothing.photograph(1.5, 5);
+  for (const ImageView& image : {a, b, c}) one.track(image, {}, budget);
+  const test::AllocationGuard guard;
+  for (const ImageView& image : {a, b, c, c, c, c, c, a}) {
+    one.track(image, mask.view(), budget);
+    one.track(image, {}, budget);
+  }
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+}  // namespace
+}  // namespace cgsr::color

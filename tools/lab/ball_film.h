@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "hal/sim/cache.h"
+#include "hal/sim/worlds/world.h"
+#include "pipeline/geometry/camera.h"
+#include "pipeline/geometry/pose.h"
+#include "pipeline/world/map.h"
+#include "platform/box.h"
+#include "platform/error.h"
+#include "tools/lab/image.h"
+
+namespace cgsr::lab {
+
+/// What happens in the film of section 5.4.3, in this order.
+enum class BallScene : std::uint8_t {
+  kAboveTable,  ///< the orange ball, lit.
+  kOnTheWay,    ///< from one of the other places to the next.
+  kInShadow,    ///< under the table, in its shadow.
+  kUnderLit,    ///< under the table, in the strip that the lamp reaches.
+  kReturned,    ///< above the table again, after it had left the image.
+  kBrown,       ///< the orange one is gone; the brown one is above the table.
+};
+inline constexpr int kBallScenes = 6;
+std::string_view name_of(BallScene scene);
+
+/// The film of section 5.4.3, by the simulator: the home's living room in the evening with a ball-shaped lamp, a still camera 5 m from the
+/// table, an orange ball (20 cm) above the table, under it in shadow, under it lit, leaving and returning; then a brown one above the table.
+///
+/// One minute, as long as theirs (1,821 images), of which every third image is drawn.
+///
+/// A seed is a take of its own: where the camera stands and looks, the balls' ways, and the noise.
+class BallFilm {
+ public:
+  static constexpr double kRate_hz = 10.0;
+  static constexpr int kImages = 607;
+
+  /// \return why the world's file cannot be used.
+  static Result<std::unique_ptr<BallFilm>> make(std::uint64_t seed);
+
+  struct Shot {
+    Image image;
+    BallScene scene = BallScene::kAboveTable;
+    std::optional<Box> orange;  ///< around its visible pixels; nothing: hidden, or out of view.
+    std::optional<Box> brown;
+    double lit = 0.0;  ///< share of the orange ball's visible pixels that see the lamp.
+  };
+
+  /// Draws an image, 0 .. kImages - 1, in any order.
+  Shot shoot(int number);
+
+  // What is true of the scene, as the vision is told it when it knows everything.
+  [[nodiscard]] const world::Map& map() const { return map_; }
+  [[nodiscard]] const geometry::Camera& camera() const { return camera_; }
+  [[nodiscard]] const geometry::Pose& X_WC() const { return X_WC_; }
+  [[nodiscard]] const Eigen::Vector3d& p_WL() const { return world_.scene.lamps.front().p_WL; }
+
+ private:
+  BallFilm(sim::World world, std::uint64_t seed) : world_(std::move(world)), seed_(seed) {}
+
+  sim::World world_;
+  std::uint64_t seed_;
+  world::Map map_;
+  geometry::Camera camera_;
+  geometry::Pose X_WC_ = geometry::Pose::Identity();
+  std::vector<std::pair<double, BallScene>> scenes_;  // from when on
+  std::unique_ptr<sim::CachedPhotographer> photographer_;
+  int orange_ = -1;  // figures
+  int brown_ = -1;
+};
+
+}  // namespace cgsr::lab
