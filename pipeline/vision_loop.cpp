@@ -1,9 +1,26 @@
 #include "pipeline/vision_loop.h"
 
+#include <cmath>
 #include <utility>
 
 namespace cgsr {
 namespace {
+
+behavior::LampBelief belief_in(const LampSight& sight, const ShadeSight& shade) {
+  using illumination::ObservationStatus;
+  behavior::LampBelief belief;
+  belief.has_board = sight.has_board;
+  belief.readable = sight.observation == ObservationStatus::kSeen || sight.observation == ObservationStatus::kNoShadow;
+  belief.seen = sight.seen.status == illumination::LampStatus::kFound;
+  belief.masked = shade.status == ShadeStatus::kMasked;
+  belief.known = sight.known;
+  if (!sight.known) return belief;
+  belief.x_m = sight.lamp.p_WL.x();
+  belief.y_m = sight.lamp.p_WL.y();
+  belief.z_m = sight.lamp.p_WL.z();
+  belief.sigma_m = std::sqrt(sight.lamp.covariance.trace());
+  return belief;
+}
 
 constexpr Duration kPoseKeeps = seconds(0.5);  // a pose that no stage renewed for so long is none to drive by
 
@@ -15,7 +32,7 @@ Decision VisionLoop::on_image(const ImageLease& image) {
   const auto& lamp = runner_.run(probes_, image, where);    // where is the lamp: Alg. 5.1, Eq. 5.1 and 5.2
   const auto& shade = runner_.run(shade_, where, lamp);     // what lies in its shadow: 5.2
   const auto& matches = runner_.run(search_, view);         // where is the object: chapter 3, Alg. 3.2
-  const auto& object = runner_.run(track_, image, view, matches);
+  const auto& object = runner_.run(track_, image, view, matches, shade);  // and 5.3
   return runner_.run(decide_, image, object, where, lamp, shade);
 }
 
@@ -35,9 +52,10 @@ VisionLoop::VisionLoop(runtime::StageRunner& runner, VisionParts parts, behavior
       shade_("shade",
              [this](const runtime::Aged<Whereabouts>& where, const LampSight& lamp) { return shade(where, lamp); }),
       search_("search", [this](WorkBudget& budget, const View& view) { return search(budget, view); }),
-      track_("track", [this](WorkBudget& budget, const ImageLease& image, const View& view,
-                             const color::SearchResult& matches) { return track(budget, image, view, matches); }),
-      decide_("decide", [this](const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
+      track_("track",
+             [this](WorkBudget& budget, const ImageLease& image, const View& view, const color::SearchResult& matches,
+                    const ShadeSight& shade) { return track(budget, image, view, matches, shade); }),
+      decide_("decide", [this](const ImageLease& image, const runtime::Aged<Found>& object,
                                const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
                                const ShadeSight& shade) { return decide(image, object, where, lamp, shade); }) {}
 
@@ -59,7 +77,8 @@ Whereabouts VisionLoop::localize(WorkBudget& budget, const ImageLease& image, co
   const auto& reduced = *view.reduced;
   const ImageView grey{reduced.grey.data(), reduced.width_px, reduced.height_px, reduced.width_px, PixelFormat::kGrey8};
   where.has_map = true;
-  where.camera = parts_.where->look(grey, image.stamp(), budget);
+  const ImageView& seen = parts_.where->takes(grey) ? grey : image.view();
+  where.camera = parts_.where->look(seen, image.stamp(), budget);
   const geometry::Pose X_WR = parts_.where->robot_at(where.camera.X_WC);
   const bool known = where.camera.state == localization::TrackState::kTracking ||
                      where.camera.state == localization::TrackState::kRecovered;
@@ -87,35 +106,54 @@ color::SearchResult VisionLoop::search(WorkBudget& budget, const View& view) {
   return parts_.tracker->search(*view.reduced, budget);
 }
 
-color::TrackedObject VisionLoop::track(WorkBudget& budget, const ImageLease& image, const View& view,
-                                       const color::SearchResult& matches) {
-  if (view.reduced == nullptr || !parts_.tracker) return {};
-  return parts_.tracker->track(image.view(), *view.reduced, matches, budget);
+Found VisionLoop::track(WorkBudget& budget, const ImageLease& image, const View& view,
+                        const color::SearchResult& matches, const ShadeSight& shade) {
+  Found found;
+  if (parts_.seek && !parts_.seek->tracks()) return found;
+  if (parts_.ball) {
+    color::ShadeMaskView mask;
+    if (shade.masks != nullptr) {
+      mask = {shade.masks->possibly_shaded.data(), shade.masks->width, shade.masks->height, shade.masks->width};
+    }
+    found.ball = parts_.ball->track(image.view(), mask, budget);
+    found.object = {found.ball.found, found.ball.box, found.ball.divergence, found.ball.light, found.ball.light};
+    return found;
+  }
+  if (view.reduced == nullptr || !parts_.tracker) return found;
+  found.object = parts_.tracker->track(image.view(), *view.reduced, matches, budget);
+  return found;
 }
 
-Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
+Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<Found>& object,
                             const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
                             const ShadeSight& shade) {
   const ImageView& view = image.view();
   const Duration elapsed = last_image_ == MonoTime{} ? Duration::zero() : image.stamp() - last_image_;
   last_image_ = image.stamp();
   Decision decision;
-  decision.object = object.value;
+  decision.object = object.value.object;
+  decision.ball = object.value.ball;
   decision.object_age = object.age;
   decision.where = where.value;
   decision.lamp = lamp.value;
   decision.lamp_age = lamp.age;
   decision.shade = shade;
+  behavior::FloorBelief here = where.value.robot;
+  here.known = here.known && where.age <= kPoseKeeps;
+  if (parts_.seek) {
+    decision.seek = parts_.seek->decide(here, belief_in(lamp.value, shade), elapsed);
+    decision.goal = decision.seek.goal;
+    decision.halt = decision.seek.halt;
+    return decision;
+  }
   if (parts_.route) {
-    behavior::FloorBelief here = where.value.robot;
-    here.known = here.known && where.age <= kPoseKeeps;
     decision.route = parts_.route->decide(here, elapsed);
     decision.goal = decision.route.goal;
     decision.halt = decision.route.halt;
     return decision;
   }
-  const behavior::Sighting sighting{object.value.found, object.value.box, object.age,   view.width_px,
-                                    view.height_px,     camera_.fx_px,    camera_.cx_px};
+  const behavior::Sighting sighting{decision.object.found, decision.object.box, object.age,   view.width_px,
+                                    view.height_px,        camera_.fx_px,       camera_.cx_px};
   decision.follow = follow_.decide(sighting, elapsed);
   decision.goal = decision.follow.goal;
   decision.halt = decision.follow.halt;

@@ -6,6 +6,8 @@
 
 #include "pipeline/behavior/follow.h"
 #include "pipeline/behavior/route.h"
+#include "pipeline/behavior/seek_lamp.h"
+#include "pipeline/color/integrated_tracker.h"
 #include "pipeline/color/tracker.h"
 #include "pipeline/imaging/reduce.h"
 #include "pipeline/runtime/stage.h"
@@ -26,17 +28,25 @@ struct Whereabouts {
   [[nodiscard]] bool known() const { return has_map && robot.known; }
 };
 
+/// Where the object is, by whichever tracker looks for it.
+struct Found {
+  color::TrackedObject object;
+  color::BallSighting ball;  ///< what the integrated tracker says beside that; else nothing.
+};
+
 /// What one image led to.
 struct Decision {
   behavior::Velocity goal;
   bool halt = false;  ///< forward motion ends at once.
   behavior::FollowDecision follow;
   behavior::RouteDecision route;
+  behavior::SeekDecision seek;
   Whereabouts where;
   LampSight lamp;
   Duration lamp_age{};  ///< since the image whose probes `lamp` comes from.
   ShadeSight shade;     ///< its masks may be gone by the time that somebody else looks; the picture stays.
   color::TrackedObject object;
+  color::BallSighting ball;
   Duration
       object_age{};  ///< since the image in which `object` was looked for; more than zero when its stage was skipped.
 };
@@ -59,11 +69,13 @@ struct Pinhole {
 
 /// What a vision loop is made of. Each may be missing; what would do its work then has nothing to say.
 struct VisionParts {
-  std::optional<color::Tracker> tracker = std::nullopt;  ///< chapter 3.
-  std::unique_ptr<WhereAmI> where = nullptr;             ///< chapter 4.
-  std::unique_ptr<WhereIsTheLamp> lamp = nullptr;        ///< chapter 5: the probes on the robot.
-  std::unique_ptr<WhatIsShaded> shade = nullptr;         ///< chapter 5: the masks; not without `where`.
-  std::optional<behavior::Route> route = std::nullopt;  ///< the task is to drive it; without one, to follow the object.
+  std::optional<color::Tracker> tracker = std::nullopt;         ///< chapter 3,
+  std::optional<color::IntegratedTracker> ball = std::nullopt;  ///< or 5.3, which is told what may lie in shadow.
+  std::unique_ptr<WhereAmI> where = nullptr;                    ///< chapter 4.
+  std::unique_ptr<WhereIsTheLamp> lamp = nullptr;               ///< chapter 5: the probes on the robot.
+  std::unique_ptr<WhatIsShaded> shade = nullptr;                ///< chapter 5: the masks; not without `where`.
+  std::optional<behavior::Route> route = std::nullopt;          ///< the task is to drive it,
+  std::optional<behavior::SeekLamp> seek = std::nullopt;        ///< or Alg. 5.2; without either, to follow the object.
 };
 
 /// One image through Figure 5.1: every line of on_image is a stage with a row in the schedule.
@@ -97,11 +109,10 @@ class VisionLoop {
   LampSight probes(const ImageLease& image, const runtime::Aged<Whereabouts>& where);
   ShadeSight shade(const runtime::Aged<Whereabouts>& where, const LampSight& lamp);
   color::SearchResult search(WorkBudget& budget, const View& view);
-  color::TrackedObject track(WorkBudget& budget, const ImageLease& image, const View& view,
-                             const color::SearchResult& matches);
-  Decision decide(const ImageLease& image, const runtime::Aged<color::TrackedObject>& object,
-                  const runtime::Aged<Whereabouts>& where, const runtime::Aged<LampSight>& lamp,
-                  const ShadeSight& shade);
+  Found track(WorkBudget& budget, const ImageLease& image, const View& view, const color::SearchResult& matches,
+              const ShadeSight& shade);
+  Decision decide(const ImageLease& image, const runtime::Aged<Found>& object, const runtime::Aged<Whereabouts>& where,
+                  const runtime::Aged<LampSight>& lamp, const ShadeSight& shade);
 
   template <class Output, class... Inputs>
   using StageOf = runtime::Stage<std::function<Output(Inputs...)>>;
@@ -119,8 +130,8 @@ class VisionLoop {
   StageOf<LampSight, const ImageLease&, const runtime::Aged<Whereabouts>&> probes_;
   StageOf<ShadeSight, const runtime::Aged<Whereabouts>&, const LampSight&> shade_;
   StageOf<color::SearchResult, WorkBudget&, const View&> search_;
-  StageOf<color::TrackedObject, WorkBudget&, const ImageLease&, const View&, const color::SearchResult&> track_;
-  StageOf<Decision, const ImageLease&, const runtime::Aged<color::TrackedObject>&, const runtime::Aged<Whereabouts>&,
+  StageOf<Found, WorkBudget&, const ImageLease&, const View&, const color::SearchResult&, const ShadeSight&> track_;
+  StageOf<Decision, const ImageLease&, const runtime::Aged<Found>&, const runtime::Aged<Whereabouts>&,
           const runtime::Aged<LampSight>&, const ShadeSight&>
       decide_;
 };

@@ -2,12 +2,16 @@
 
 #include <utility>
 
+#include "pipeline/localization/perceive.h"
+
 namespace cgsr {
 
 WhereAmI::WhereAmI(KnownSelf self)
     : map_(std::move(self.map)),
       X_CR_(self.X_RC.inverse()),
       axle_height_m_(self.axle_height_m),
+      camera_(self.camera),
+      working_(localization::working_camera(self.camera)),
       localizer_(map_, self.camera, self.localizer),
       tracker_(localizer_, self.X_RC, self.tracking),
       own_pixels_(std::move(self.own_pixels)),

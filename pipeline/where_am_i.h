@@ -38,6 +38,12 @@ class WhereAmI {
   /// What the base reported since the last image.
   void heard(const hal::Odometry& odometry) { odometry_.add(odometry); }
 
+  /// Is an image of a size that look() takes?
+  [[nodiscard]] bool takes(const ImageView& image) const {
+    return (image.width_px == camera_.width_px && image.height_px == camera_.height_px) ||
+           (image.width_px == working_.width_px && image.height_px == working_.height_px);
+  }
+
   /// \param grey  of the camera's size or half of it.  \param stamp  start of its exposure.
   const localization::TrackedPose& look(const ImageView& grey, MonoTime stamp, WorkBudget& budget);
 
@@ -50,6 +56,8 @@ class WhereAmI {
   world::Map map_;
   geometry::Pose X_CR_;
   double axle_height_m_;
+  geometry::Camera camera_;
+  geometry::Camera working_;
   localization::Localizer localizer_;
   localization::PoseTracker tracker_;
   std::vector<std::uint8_t> own_pixels_;

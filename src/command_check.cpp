@@ -94,7 +94,7 @@ std::vector<std::string> problems_of(const config::Robot& robot) {
     period = mode->frame_period;
     fmt::print("camera    {}x{} at {:.2f} Hz\n", mode->width_px, mode->height_px, 1.0 / to_seconds(period));
   }
-  if (robot.task.kind != config::TaskKind::kFollow) {
+  if (robot.task.kind == config::TaskKind::kRoute) {
     const auto places = behavior::parse_places(robot.task.route.places_m);
     if (places) fmt::print("route     {} places\n", places->size());
     if (!places) problems.push_back(fmt::format("task.route.places_m: {}", places.error().message));

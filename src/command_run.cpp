@@ -41,7 +41,7 @@ Result<void> apply(const Options& options, config::Robot& config) {
   if (!options.input.empty()) config.camera.replay.path = options.input;
   if (!options.model.empty()) config.run.model = options.model;
   if (options.seed >= 0) config.sim.seed = options.seed;
-  if (config.task.kind == config::TaskKind::kFollow && config.run.model.empty() && config.run.learn.empty()) {
+  if (config.task.kind != config::TaskKind::kRoute && config.run.model.empty() && config.run.learn.empty()) {
     return fail(
         fmt::format("{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a "
                     "model, or run.learn "

@@ -161,6 +161,9 @@ class SeekLamp {
 
   SeekDecision decide(const FloorBelief& here, const LampBelief& lamp, Duration elapsed);
 
+  /// Is it where the object is looked for?
+  [[nodiscard]] bool tracks() const { return state_ == SeekState::kTracking || state_ == SeekState::kAmbient; }
+
  private:
   static constexpr int kMostVisited = 16;
 

@@ -102,6 +102,7 @@ struct Robot {
   Color color;
   RobotLocalization localization;
   OdometryScales odometry;
+  color::IntegratedParameters integrated;
   illumination::ProbesParameters probes;
   illumination::LampParameters lamp;
   ShadeStageParameters shade;
@@ -121,6 +122,8 @@ struct Robot {
     visit.section("color", self.color, "Colour tracking (chapter 3)");
     visit.section("localization", self.localization, "Where the robot is (chapter 4)");
     visit.section("odometry", self.odometry, "What the base reports of its way, scaled before it carries the pose");
+    visit.section("integrated", self.integrated,
+                  "A ball, bright everywhere and dark where there may be shade (5.3; task.kind = \"lamp\")");
     visit.section("probes", self.probes, "The probe board and how it is looked at (Alg. 5.1)");
     visit.section("lamp", self.lamp, "What is known of lamps, and how observations become one (Eq. 5.1, 5.2)");
     visit.section("shade", self.shade, "What lies in the lamp's shadow (5.2)");
@@ -132,8 +135,9 @@ struct Robot {
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
-    if (task.kind == TaskKind::kRoute && localization.map.empty()) {
-      return "task.kind = \"route\" needs a map (localization.map): places mean nothing to a robot without one";
+    if (task.kind != TaskKind::kFollow && localization.map.empty()) {
+      return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "
+             "one";
     }
     if (probes.board.probes > 0 && (localization.camera.empty() || localization.mount.empty())) {
       return "probes.board needs localization.camera and localization.mount: shadows are measured through them";

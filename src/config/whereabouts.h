@@ -4,6 +4,7 @@
 #include <string>
 
 #include "pipeline/behavior/route.h"
+#include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/pose_tracker.h"
 #include "platform/parameters.h"
@@ -80,18 +81,23 @@ struct RobotLocalization {
 enum class TaskKind : std::uint8_t {
   kFollow,  ///< keep at a distance from an object.
   kRoute,   ///< drive from place to place.
+  kLamp,    ///< Algorithm 5.2: find the lamp, back off, track with masks.
 };
 inline constexpr std::array kTaskKindNames{Named<TaskKind>{"follow", TaskKind::kFollow},
-                                           Named<TaskKind>{"route", TaskKind::kRoute}};
+                                           Named<TaskKind>{"route", TaskKind::kRoute},
+                                           Named<TaskKind>{"lamp", TaskKind::kLamp}};
 
 struct Task {
   TaskKind kind = TaskKind::kFollow;
   behavior::RouteParameters route;
+  behavior::SeekLampParameters lamp;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("kind", self.kind, kTaskKindNames, "follow: an object; route: from place to place, which needs a map");
+    visit.choice("kind", self.kind, kTaskKindNames,
+                 "follow: an object; route: from place to place; lamp: Algorithm 5.2; the last two need a map");
     visit.section("route", self.route, "The places, and how fast");
+    visit.section("lamp", self.lamp, "Explore, locate the lamp, back off, track (Alg. 5.2)");
   }
 };
 

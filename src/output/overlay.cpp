@@ -11,13 +11,14 @@ namespace {
 
 constexpr int kStripeHeight_px = 22;
 constexpr int kLineHeight_px = 20;
-constexpr int kMaxLines = 3;
+constexpr int kMaxLines = 4;
 constexpr int kPanelHeight_px = kStripeHeight_px + (kMaxLines + 1) * kLineHeight_px + 10;
 constexpr int kColumn_px = 3;  // width of one image's light in the stripe
 const cv::Scalar kPanel(32, 28, 26);
 const cv::Scalar kText(225, 225, 225);
 const cv::Scalar kFound(80, 230, 80);
 const cv::Scalar kTruth(230, 150, 60);
+const cv::Scalar kShade(220, 90, 40);
 const cv::Scalar kNothing(60, 60, 60);
 
 cv::Scalar bgr_of(const color::Light& light) {
@@ -54,12 +55,34 @@ const cv::Mat& Overlay::draw(const ImageView& image, const OverlayFacts& facts) 
   const cv::Size scaled(picture_.cols, static_cast<int>(height_px_ * zoom_));
   cv::Mat top = picture_(cv::Rect({0, 0}, scaled));
   cv::resize(to_bgr(image), top, scaled, 0, 0, cv::INTER_NEAREST);
+  if (facts.shade != nullptr) draw_shade(*facts.shade, top);
   if (facts.truth) draw_box(*facts.truth, kTruth, 1);
   if (facts.box) draw_box(*facts.box, kFound, 2);
   lights_.push_back(facts.box ? facts.light : std::nullopt);
   while (static_cast<int>(lights_.size()) * kColumn_px > picture_.cols) lights_.pop_front();
   draw_panel(facts);
   return picture_;
+}
+
+void Overlay::draw_shade(const ShadePicture& shade, cv::Mat& top) {
+  cv::Mat possibly(ShadePicture::kHeight, ShadePicture::kWidth, CV_8UC1);
+  cv::Mat surface(ShadePicture::kHeight, ShadePicture::kWidth, CV_8UC1);
+  for (int row = 0; row < ShadePicture::kHeight; ++row) {
+    for (int column = 0; column < ShadePicture::kWidth; ++column) {
+      const int cell = shade.at(column, row);
+      possibly.at<std::uint8_t>(row, column) = (cell & 1) != 0 ? 255 : 0;
+      surface.at<std::uint8_t>(row, column) = (cell & 2) != 0 ? 255 : 0;
+    }
+  }
+  cv::Mat large;
+  cv::resize(possibly, large, top.size(), 0, 0, cv::INTER_NEAREST);
+  cv::Mat tinted;
+  cv::addWeighted(top, 0.72, cv::Mat(top.size(), CV_8UC3, kShade), 0.28, 0.0, tinted);
+  tinted.copyTo(top, large);
+  cv::resize(surface, large, top.size(), 0, 0, cv::INTER_NEAREST);
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(large, outlines, cv::RETR_LIST, cv::CHAIN_APPROX_SIMPLE);
+  cv::drawContours(top, outlines, -1, kShade, 1);
 }
 
 void Overlay::draw_box(const Box& box, const cv::Scalar& color, int thickness) {

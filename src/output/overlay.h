@@ -8,6 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/color/light.h"
+#include "pipeline/what_is_shaded.h"
 #include "platform/box.h"
 #include "platform/image_view.h"
 
@@ -20,7 +21,8 @@ struct OverlayFacts {
   std::optional<Box> truth;  ///< where it really is, when known.
   std::optional<color::Light> light;
   double divergence = 0.0;
-  std::vector<std::string> lines;  ///< free text below the image, one line each; at most three are drawn.
+  const ShadePicture* shade = nullptr;  ///< what may lie in shadow: tinted, and outlined where the surface itself does.
+  std::vector<std::string> lines;       ///< free text below the image, one line each; at most four are drawn.
 };
 
 /// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3)
@@ -37,6 +39,7 @@ class Overlay {
 
  private:
   void draw_box(const Box& box, const cv::Scalar& color, int thickness);
+  void draw_shade(const ShadePicture& shade, cv::Mat& top);
   void draw_panel(const OverlayFacts& facts);
 
   int width_px_;

@@ -36,11 +36,19 @@ std::string light_columns(const Decision& decision) {
   return columns + fmt::format(",\"{}\"", name_of(decision.shade.status));
 }
 
-std::string_view state_of(const Decision& decision, bool route) {
-  return route ? behavior::text(decision.route.state) : behavior::text(decision.follow.state);
+std::string_view state_of(const Decision& decision, config::TaskKind task) {
+  switch (task) {
+    case config::TaskKind::kFollow:
+      return behavior::text(decision.follow.state);
+    case config::TaskKind::kRoute:
+      return behavior::text(decision.route.state);
+    case config::TaskKind::kLamp:
+      return behavior::text(decision.seek.state);
+  }
+  return "unknown";
 }
 
-std::string row_of(const VisionReport& report, const MotionStatus& motion, bool route) {
+std::string row_of(const VisionReport& report, const MotionStatus& motion, config::TaskKind task) {
   const auto& object = report.decision.object;
   std::string row =
       fmt::format("{},{:.6f},", report.record.image_sequence, to_seconds(report.record.stamp.time_since_epoch()));
@@ -51,7 +59,7 @@ std::string row_of(const VisionReport& report, const MotionStatus& motion, bool 
   } else {
     row += "0,,,,,,,,,";
   }
-  row += fmt::format("\"{}\",{:.4f},{:.4f},{:.4f},{:.4f},{},\"{}\",", state_of(report.decision, route),
+  row += fmt::format("\"{}\",{:.4f},{:.4f},{:.4f},{:.4f},{},\"{}\",", state_of(report.decision, task),
                      report.decision.goal.forward_mps, report.decision.goal.left_radps, motion.commanded.forward_mps,
                      motion.commanded.left_radps, motion.armed ? 1 : 0, text(motion.cause));
   return row + pose_columns(report.decision.where) + "," + light_columns(report.decision);
@@ -113,6 +121,7 @@ void HousekeepingTask::take(const VisionReport& report) {
   }
   watch_pose(report);
   watch_light(report);
+  watch_seek(report);
   tally_.found += decision.object.found ? 1 : 0;
   const auto light =
       lights_.add(report.record.stamp, decision.object.found ? std::optional(decision.object.light) : std::nullopt);
@@ -131,6 +140,7 @@ void HousekeepingTask::take(const VisionReport& report) {
       inputs_sum_.add(view.row(y), static_cast<std::size_t>(view.width_px) * 2);
     }
     draw(report, *picture, light, truth);
+    if (outputs_.witness) outputs_.witness(picture->view(), report, truth);
   }
 }
 
@@ -147,6 +157,16 @@ void HousekeepingTask::watch_pose(const VisionReport& report) {
   spdlog::info("image {}: pose: {} -> {}{}{}", report.record.image_sequence, name_of(pose_), name_of(camera.state),
                camera.correction.reason == localization::Reason::kNone ? "" : ": ", name_of(camera.correction.reason));
   pose_ = camera.state;
+}
+
+void HousekeepingTask::watch_seek(const VisionReport& report) {
+  if (outputs_.task != config::TaskKind::kLamp) return;
+  const auto& seek = report.decision.seek;
+  if (!tally_.seek.empty() && tally_.seek.back().state == seek.state) return;
+  const auto image = report.record.image_sequence;
+  const double at_s = to_seconds(report.record.stamp.time_since_epoch());
+  spdlog::info("image {} ({:.1f} s): {} ({})", image, at_s, behavior::text(seek.state), behavior::text(seek.reason));
+  tally_.seek.push_back({seek.state, seek.reason, image, at_s});
 }
 
 void HousekeepingTask::watch_light(const VisionReport& report) {
@@ -182,7 +202,7 @@ std::optional<ImageLease> HousekeepingTask::picture_of(std::uint64_t sequence) {
 }
 
 void HousekeepingTask::write_row(const VisionReport& report) {
-  const std::string row = row_of(report, tally_.last_motion, outputs_.drives_route);
+  const std::string row = row_of(report, tally_.last_motion, outputs_.task);
   outputs_sum_.add(row.data(), row.size());
   if (outputs_.csv) note(outputs_.csv->add_line(row));
 }
@@ -197,9 +217,8 @@ void HousekeepingTask::draw(const VisionReport& report, const ImageLease& pictur
   facts.light = light;
   facts.divergence = decision.object.divergence;
   const MotionStatus& motion = tally_.last_motion;
-  facts.lines.push_back(fmt::format("{}   commanded {:+.2f} m/s {:+.2f} rad/s   {}",
-                                    state_of(decision, outputs_.drives_route), motion.commanded.forward_mps,
-                                    motion.commanded.left_radps,
+  facts.lines.push_back(fmt::format("{}   commanded {:+.2f} m/s {:+.2f} rad/s   {}", state_of(decision, outputs_.task),
+                                    motion.commanded.forward_mps, motion.commanded.left_radps,
                                     motion.cause == StopCause::kNone ? "free to move" : text(motion.cause)));
   if (decision.where.has_map) {
     const auto& camera = decision.where.camera;
@@ -208,6 +227,18 @@ void HousekeepingTask::draw(const VisionReport& report, const ImageLease& pictur
                                       decision.where.robot.heading_rad * 180.0 / std::numbers::pi,
                                       camera.correction.matches));
   }
+  const LampSight& sight = decision.lamp;
+  if (sight.has_board) {
+    const auto reason = reason_of(sight);
+    std::string line = fmt::format("probes: {}   ", reason.empty() ? "shadows seen" : reason);
+    if (sight.known) {
+      const auto& p = sight.lamp.p_WL;
+      line += fmt::format("lamp {:.2f} {:.2f} {:.2f} m, sigma {:.3f}   ", p.x(), p.y(), p.z(),
+                          std::sqrt(sight.lamp.covariance.trace()));
+    }
+    facts.lines.push_back(line + fmt::format("shade: {}", name_of(decision.shade.status)));
+  }
+  if (decision.shade.status == ShadeStatus::kMasked) facts.shade = &decision.shade.picture;
   facts.lines.push_back(stage_times(report.record, table_));
   if (truth && truth->in_view) facts.truth = truth->box;
   const cv::Mat& overlay = outputs_.overlay->draw(picture.view(), facts);

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hal/simulation.h"
 #include "pipeline/color/light_history.h"
 #include "pipeline/runtime/stage_table.h"
 #include "platform/config/sha256.h"
+#include "src/config/whereabouts.h"
 #include "src/output/overlay.h"
 #include "src/output/plan_view.h"
 #include "src/output/text_file.h"
@@ -19,15 +22,28 @@
 
 namespace cgsr::robot {
 
+/// Looks on at every image with what the robot made of it and what was really there. In lock-step what a decision points to is still there.
+using Witness = std::function<void(const ImageView& image, const VisionReport& report,
+                                   const std::optional<hal::ImageTruth>& truth)>;
+
 /// The files a run leaves behind; each may be missing.
 struct RunOutputs {
   std::optional<app::TextFile> csv;
   std::optional<app::VideoWriter> video;
-  std::optional<app::Overlay> overlay;          ///< there whenever `video` is.
-  std::optional<app::PlanView> plan;            ///< beside it; only of a simulated home.
-  const hal::Simulation* simulation = nullptr;  ///< where truth comes from; null: there is none.
-  bool drives_route = false;                    ///< the task is a route, not an object.
+  std::optional<app::Overlay> overlay;                ///< there whenever `video` is.
+  std::optional<app::PlanView> plan;                  ///< beside it; only of a simulated home.
+  const hal::Simulation* simulation = nullptr;        ///< where truth comes from; null: there is none.
+  config::TaskKind task = config::TaskKind::kFollow;  ///< whose state is told.
+  Witness witness = nullptr;
   double set_distance_m = 0.0;  ///< that the robot shall keep, for truth and plan; 0: it follows nothing.
+};
+
+/// A change of state of Algorithm 5.2.
+struct SeekStep {
+  behavior::SeekState state = behavior::SeekState::kWaiting;
+  behavior::SeekReason reason = behavior::SeekReason::kBegun;
+  std::uint64_t image = 0;
+  double at_s = 0.0;
 };
 
 /// What a run came to.
@@ -42,6 +58,7 @@ struct RunTally {
   double fastest_radps = 0.0;
   MotionStatus last_motion;
   Whereabouts last_where;
+  std::vector<SeekStep> seek;  ///< in order; empty where that is not the task.
   std::string output_problem;  ///< the first file that could not be written; empty: none.
 };
 
@@ -83,6 +100,7 @@ class HousekeepingTask {
   void take(const VisionReport& report);
   void watch_pose(const VisionReport& report);
   void watch_light(const VisionReport& report);
+  void watch_seek(const VisionReport& report);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
   void write_row(const VisionReport& report);
   void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,

@@ -21,7 +21,8 @@
 namespace cgsr::robot {
 namespace {
 
-constexpr double kOwnMargin_px = 4.0;  // of the localizer's image
+constexpr double kOwnMargin_px = 4.0;   // of the localizer's image
+constexpr double kAreaMargin_m = 0.25;  // behaviours plan so far inside of the area in which wheels are let turn
 
 }  // namespace
 
@@ -92,9 +93,16 @@ Result<color::ColorModel> Robot::learn_or_load() {
 
 /// The object, where the task is to follow one.
 Result<void> Robot::make_tracker(VisionParts& parts, std::optional<behavior::LearnedSize>& size) {
-  if (config_.task.kind != config::TaskKind::kFollow) return {};
+  if (config_.task.kind == config::TaskKind::kRoute) return {};
   const auto model = learn_or_load();
   if (!model) return tl::unexpected(model.error());
+  if (config_.task.kind == config::TaskKind::kLamp) {
+    const double focal_px = 0.5 * (camera_model_->fx_px + camera_model_->fy_px);
+    auto ball = color::IntegratedTracker::create(*model, config_.integrated, mode_.width_px, mode_.height_px, focal_px);
+    if (!ball) return tl::unexpected(ball.error());
+    parts.ball.emplace(std::move(*ball));
+    return {};
+  }
   auto tracker = color::Tracker::create(*model, config_.color.track, mode_.width_px, mode_.height_px);
   if (!tracker) return tl::unexpected(tracker.error());
   parts.tracker.emplace(std::move(*tracker));
@@ -176,6 +184,15 @@ Result<void> Robot::make_loops() {
     if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
     parts.route.emplace(config_.task.route, std::move(*places));
   }
+  if (config_.task.kind == config::TaskKind::kLamp) {
+    const auto& board = config_.probes.board;
+    const auto& area = config_.motion.keep_in;
+    parts.seek.emplace(config_.task.lamp,
+                       std::make_shared<behavior::FreeFloor>(parts.where->map(), config_.task.lamp.floor),
+                       behavior::BoardPlace{board.position_m[0], board.position_m[2]},
+                       behavior::KeptArea{area.enabled, area.x_min_m + kAreaMargin_m, area.x_max_m - kAreaMargin_m,
+                                          area.y_min_m + kAreaMargin_m, area.y_max_m - kAreaMargin_m});
+  }
   auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
   if (!schedule) return tl::unexpected(schedule.error());
 
@@ -196,7 +213,8 @@ Result<void> Robot::open_outputs() {
     if (auto head = csv->add_line(run_csv_head()); !head) return head;
     outputs.csv.emplace(std::move(*csv));
   }
-  outputs.drives_route = config_.task.kind == config::TaskKind::kRoute;
+  outputs.task = config_.task.kind;
+  outputs.witness = options_.witness;
   if (simulation_) {
     outputs.simulation = simulation_.get();
     outputs.set_distance_m = config_.task.kind == config::TaskKind::kFollow ? config_.follow.distance_m : 0.0;

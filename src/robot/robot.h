@@ -26,6 +26,7 @@ struct RunOptions {
   double duration_s = 0.0;  ///< 0: until the images end or a signal comes.
   std::string csv;
   std::string video;
+  Witness witness = nullptr;  ///< for the lab; lock-step only.
 };
 
 /// A robot, put together from its file: devices, loops and what connects them. Boot order: camera, model, schedule, stages, outputs, base,

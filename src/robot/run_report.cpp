@@ -96,6 +96,26 @@ std::string pose_text(const PoseFigures& pose) {
       100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_ends_off_m);
 }
 
+Json seek_json(const std::vector<SeekStep>& steps) {
+  Json json = Json::array();
+  for (const SeekStep& step : steps) {
+    json.push_back({{"state", behavior::text(step.state)},
+                    {"reason", behavior::text(step.reason)},
+                    {"image", step.image},
+                    {"at_s", step.at_s}});
+  }
+  return json;
+}
+
+std::string seek_text(const std::vector<SeekStep>& steps) {
+  std::string text = "Algorithm 5.2, image by image:\n";
+  for (const SeekStep& step : steps) {
+    text += fmt::format("{:>8} {:>7.1f} s  {:<32} {}\n", step.image, step.at_s, behavior::text(step.state),
+                        behavior::text(step.reason));
+  }
+  return text + "\n";
+}
+
 Json light_json(const LightFigures& light) {
   Json json{{"looks", light.looks}, {"known", light.known}, {"masked", light.masked}};
   json["unanswered"] = Json::object();
@@ -175,6 +195,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   json["motion"] = motion_json(tally);
   if (const TruthFigures* truth = housekeeping.truth()) json["truth"] = truth_json(*truth);
   if (const PoseFigures* pose = housekeeping.pose_truth()) json["pose"] = pose_json(*pose);
+  if (!tally.seek.empty()) json["task"] = seek_json(tally.seek);
   if (const LightFigures* light = housekeeping.light()) json["light"] = light_json(*light);
   json["stages"] = stages_json(housekeeping.table());
   visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
@@ -202,6 +223,7 @@ std::string summary_text(Robot& robot, const std::string& ended_by) {
                       last.commanded.left_radps, cgsr::text(last.cause));
   if (const TruthFigures* truth = housekeeping.truth()) text += truth_text(*truth);
   if (const PoseFigures* pose = housekeeping.pose_truth()) text += pose_text(*pose);
+  if (!tally.seek.empty()) text += seek_text(tally.seek);
   if (const LightFigures* light = housekeeping.light()) text += light_text(*light);
   text += runtime::to_text(housekeeping.table());
   text += "\nring          capacity  high water  pushed  dropped  skipped\n";

@@ -23,6 +23,8 @@ std::span<const Experiment> experiments() {
                  section_4_3_3},
       Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
       Experiment{"home-round", "Three minutes through the simulated home on wheels that slip", true, home_round},
+      Experiment{"section-5.4.3", "Algorithm 5.2 in the simulated home, a ball tracked with masks (5.4.3)", true,
+                 section_5_4_3},
       Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
       Experiment{"shaded-ball", "A ball in light and shade, with the mask of shade and without (5.4.3)", true,
                  shaded_ball},

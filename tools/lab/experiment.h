@@ -52,6 +52,7 @@ Result<Report> false_corrections(const Setting& setting);
 Result<Report> home_round(const Setting& setting);
 Result<Report> closed_loop(const Setting& setting);
 Result<Report> table_5_1(const Setting& setting);
+Result<Report> section_5_4_3(const Setting& setting);
 Result<Report> shaded_ball(const Setting& setting);
 
 }  // namespace cgsr::lab

@@ -48,6 +48,14 @@ void complain(std::string& problems, const std::filesystem::path& file, const st
 /// Writes what the scenario says over what the world's file says. \return problems, a line each.
 std::string apply(const ScenarioSpec& spec, std::uint32_t seed, const std::filesystem::path& file, WorldSpec& world) {
   std::string problems;
+  world.material.insert(world.material.end(), spec.material.begin(), spec.material.end());
+  world.ball.insert(world.ball.end(), spec.ball.begin(), spec.ball.end());
+  if (RobotSpec* robot =
+          spec.robot.empty() ? (world.robot.empty() ? nullptr : &world.robot.front()) : named(world.robot, spec.robot);
+      robot != nullptr && spec.start.given) {
+    robot->start_m = {spec.start.x_m, spec.start.y_m, 0.0};
+    robot->start_heading_deg = spec.start.heading_deg;
+  }
   for (std::size_t i = 0; i < spec.actor.size(); ++i) {
     const ActorScriptSpec& script = spec.actor[i];
     const WalkSpec walk = astray(script.walk, script.astray_m, seed, i);
@@ -60,7 +68,11 @@ std::string apply(const ScenarioSpec& spec, std::uint32_t seed, const std::files
     if (light.lamp.empty()) {
       world.ambient.script = light.script;
     } else if (LampSpec* lamp = named(world.lamp, light.lamp)) {
-      lamp->script = light.script;
+      if (!light.script.empty()) lamp->script = light.script;
+      if (light.radius_m > 0.0) {
+        lamp->radius_m = light.radius_m;
+        lamp->globe_radius_m = 0.0;
+      }
     } else {
       complain(problems, file, fmt::format("light '{}': the world has no lamp of that name", light.lamp));
     }

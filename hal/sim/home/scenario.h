@@ -158,11 +158,13 @@ struct WallSwitchSpec {
 /// [[light]]: another script for a lamp of the world.
 struct LightScriptSpec {
   std::string lamp;
+  double radius_m = 0.0;
   std::vector<LightKeySpec> script;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.text("lamp", self.lamp, "name of the lamp; empty: the light from everywhere");
+    visit.number("radius_m", self.radius_m, {0.0, 1.0}, "m", "a ball of light so large; 0: as the world says");
     visit.list("script", self.script, "what it does over time");
   }
 };
@@ -194,6 +196,22 @@ struct ObjectPartSpec {
   }
 };
 
+/// [start]: where the robot begins, instead of where the world has it.
+struct StartSpec {
+  bool given = false;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double heading_deg = 0.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.flag("given", self.given, "off: where the world has it");
+    visit.number("x_m", self.x_m, {-1000.0, 1000.0}, "m", "on the floor");
+    visit.number("y_m", self.y_m, {-1000.0, 1000.0}, "m", "on the floor");
+    visit.number("heading_deg", self.heading_deg, {-360.0, 360.0}, "deg", "where it looks");
+  }
+};
+
 /// A scenario file: a world, what happens in it, and what goes wrong.
 struct ScenarioSpec {
   std::string world;
@@ -201,9 +219,12 @@ struct ScenarioSpec {
   std::string object;
   double ends_at_s = kForEver_s;
   std::vector<ObjectPartSpec> object_part;
+  StartSpec start;
   CameraSpec camera;
   BaseParameters base;
   std::vector<LineSpec> line;
+  std::vector<MaterialSpec> material;
+  std::vector<BallSpec> ball;
   std::vector<ActorScriptSpec> actor;
   std::vector<LightScriptSpec> light;
   std::vector<WallSwitchSpec> wall_switch;
@@ -219,9 +240,12 @@ struct ScenarioSpec {
     visit.text("object", self.object, "whom the robot shall follow: truth speaks of it; empty: of nobody");
     visit.number("ends_at_s", self.ends_at_s, kTime_s, "s", "the camera ends then, and the run with it");
     visit.list("object_part", self.object_part, "What of the object counts for its box; none: all of it");
+    visit.section("start", self.start, "Where the robot begins");
     visit.section("camera", self.camera, "How the camera measures");
     visit.section("base", self.base, "The simulated Segway");
     visit.list("line", self.line, "Lines of the robot's computer");
+    visit.list("material", self.material, "Surfaces that the world does not have");
+    visit.list("ball", self.ball, "Balls that the world does not have");
     visit.list("actor", self.actor, "What moves otherwise than the world says");
     visit.list("light", self.light, "Lamps that change");
     visit.list("wall_switch", self.wall_switch, "Switches in the wall; off before the first");
