@@ -135,7 +135,6 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     if (look_now) {
       look(X_WC);
       looked_from = X_WC;
-      look_now = false;
     }
     view_.project(X_WC, camera_);
     if (round == 0) metric = motion_metric(X_WC);

@@ -236,7 +236,7 @@ Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Repo
 // --- ViSP's castle -----------------------------------------------------------------------------------------------------------------------
 
 /// Where the cube stands in ViSP's own test: a half turn.
-geometry::Pose castle_X_WM() {
+geometry::Pose castle_model() {
   geometry::Pose X = geometry::Pose::Identity();
   X.matrix().topRows<3>() << -1, 0, 0, -0.2, 0, 0, 1, 0.12, 0, 1, 0, -0.15;
   return X;
@@ -244,9 +244,9 @@ geometry::Pose castle_X_WM() {
 
 Result<world::Map> castle_map() {
   const auto path = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-castle.cao", getpid());
-  const Eigen::AngleAxisd turn(castle_X_WM().linear());
+  const Eigen::AngleAxisd turn(castle_model().linear());
   const Vector3d tu = turn.angle() * turn.axis();
-  const Vector3d t = castle_X_WM().translation();
+  const Vector3d t = castle_model().translation();
   const std::string text =
       fmt::format("V1\nload(\"{}\")\nload(\"{}\", t=[{}; {}; {}], tu=[{:.9f}; {:.9f}; {:.9f}])\n0\n0\n0\n0\n0\n0\n",
                   (kCastle / "Models" / "chateau.cao").string(), (kCastle / "Models" / "cube.cao").string(), t.x(),
@@ -365,7 +365,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
     std::string best_name;
     for (const VispChoice& choice : kVispChoices) {
       auto visp =
-          VispEdges::create({{kCastle / "Models" / "chateau.cao"}, {kCastle / "Models" / "cube.cao", castle_X_WM()}},
+          VispEdges::create({{kCastle / "Models" / "chateau.cao"}, {kCastle / "Models" / "cube.cao", castle_model()}},
                             camera, {choice.range_px, choice.calls});
       if (!visp) return tl::unexpected(visp.error());
       CastleTally theirs;
@@ -379,7 +379,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
       best_name = choice.name();
     }
     const auto filmed = film(setting, fmt::format("castle-{:.0f}-visp", off), *map, camera, pictures, best->found,
-                             best_name + ", " + from);
+                             fmt::format("{}, {}", best_name, from));
     if (!filmed) return tl::unexpected(filmed.error());
     report.notes.push_back(fmt::format("Film: {} ({}).", filmed->string(), best_name));
   }
