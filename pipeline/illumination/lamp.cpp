@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 namespace cgsr::illumination {
@@ -128,6 +129,22 @@ Result<void> check_lamp(const Board& board, const LampParameters& parameters) {
 Vector3d on_ray(const Vector2d& p_BS, const Vector3d& p_BA, double z_m) {
   const Vector3d from(p_BS.x(), p_BS.y(), 0.0);
   return from + (p_BA - from) * (z_m / p_BA.z());
+}
+
+std::optional<Vector3d> nearest_to_rays(std::span<const TipShadow> shadows) {
+  Matrix3d H = Matrix3d::Zero();
+  Vector3d g = Vector3d::Zero();
+  for (const TipShadow& shadow : shadows) {
+    const Vector3d from(shadow.p_S.x(), shadow.p_S.y(), 0.0);
+    const Vector3d way = (shadow.p_A - from).normalized();
+    const Matrix3d across = Matrix3d::Identity() - way * way.transpose();
+    H += across;
+    g += across * from;
+  }
+  // Parallel rays leave the way along them open.
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> values(H);
+  if (shadows.size() < 2 || values.eigenvalues()[0] < 1e-4) return std::nullopt;
+  return Vector3d(values.eigenvectors() * (values.eigenvectors().transpose() * g).cwiseQuotient(values.eigenvalues()));
 }
 
 ShadowModel shadow_of(const Vector3d& p_BL, const Vector3d& p_BA) {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -71,6 +73,15 @@ Result<void> check_lamp(const Board& board, const LampParameters& parameters);
 
 /// The ray of a tip's shadow through its tip, cut at a height (Eq. 5.1, 5.2). All in the board's frame. `z_m` is above the tip.
 Eigen::Vector3d on_ray(const Eigen::Vector2d& p_BS, const Eigen::Vector3d& p_BA, double z_m);
+
+/// A tip above a plane z = 0 and where its shadow falls on it, in the plane's frame.
+struct TipShadow {
+  Eigen::Vector3d p_A = Eigen::Vector3d::Zero();
+  Eigen::Vector2d p_S = Eigen::Vector2d::Zero();
+};
+/// The point that is nearest to all rays from shadows through their tips: a lamp with its height, plain least squares.
+/// \return nothing: fewer than two rays, or rays that are parallel.
+std::optional<Eigen::Vector3d> nearest_to_rays(std::span<const TipShadow> shadows);
 
 /// A tip's shadow as it follows from a lamp, with its derivatives.
 struct ShadowModel {

@@ -28,6 +28,9 @@ std::span<const Experiment> experiments() {
       Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
       Experiment{"shaded-ball", "A ball in light and shade, with the mask of shade and without (5.4.3)", true,
                  shaded_ball},
+      Experiment{"lamp-cases", "Lamps off, two, behind, flickering, moving; strengths and angles (5.4.1)", true,
+                 lamp_cases},
+      Experiment{"lamp-drives", "A lamp's place and height while the robot drives", true, lamp_drives},
       Experiment{"real-localization", "Chapter 4 on a cube, a desk and ViSP's castle", true, real_localization},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };

@@ -47,7 +47,9 @@ class ProbeRoom {
   }
   void move_lamp(int lamp, const Eigen::Vector3d& p_WL) { moved_[static_cast<std::size_t>(lamp)] = p_WL; }
   void switch_lamp(int lamp, bool on) { on_[static_cast<std::size_t>(lamp)] = on; }
-  void scale_light(double factor) { factor_ = factor; }
+  void scale_light(double factor) { factor_ = factor * base_; }
+  /// What scale_light() multiplies.
+  void set_base_light(double factor) { factor_ = base_ = factor; }
 
  private:
   explicit ProbeRoom(sim::World world) : world_(std::move(world)) {}
@@ -59,6 +61,7 @@ class ProbeRoom {
   std::array<std::optional<Eigen::Vector3d>, 2> moved_;
   std::array<bool, 2> on_{true, true};
   double factor_ = 1.0;
+  double base_ = 1.0;
 
   friend struct RobotCopy;
 };

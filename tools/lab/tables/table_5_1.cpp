@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -27,17 +29,18 @@ struct Trials {
   std::vector<double> sigma_cm;
   int within_bound = 0;  // normalised squared error below its 99 % bound
   int asked = 0;
-  std::array<int, 6> unanswered{};  // by LampStatus
+  std::map<std::string, int> unanswered;  // by its cause
 };
 
 // The bound of a chi-square with three degrees of freedom that 99 % stay below.
 constexpr double kChi2 = 11.345;
 
-void judge(const sim::Pose& X_WR, const Eigen::Vector3d& p_WL, const illumination::LampEstimates& lamps,
-           Trials& trials) {
+void judge(const sim::Pose& X_WR, const Eigen::Vector3d& p_WL, const illumination::ProbeObservation& observation,
+           const illumination::LampEstimates& lamps, Trials& trials) {
   ++trials.asked;
   if (lamps.count == 0 || lamps.lamp[0].status != LampStatus::kFound) {
-    ++trials.unanswered[static_cast<std::size_t>(lamps.status)];
+    const bool seen = observation.status == illumination::ObservationStatus::kSeen;
+    ++trials.unanswered[std::string(seen ? name_of(lamps.status) : name_of(observation.status))];
     return;
   }
   const auto& lamp = lamps.lamp[0];
@@ -68,7 +71,7 @@ Result<Trials> run(ProbeRoom& room, int row, int tips, int wanted, const Setting
     probes.board = copy.board;
     illumination::ProbeObserver observer(*board, probes, lamp.height_m - board->X_RB.translation().z());
     const auto observation = observer.observe(room.shoot(*X_WR, seed, static_cast<std::uint64_t>(draw)));
-    judge(*X_WR, room.p_WL(), illumination::locate_lamps(*board, lamp, observation), trials);
+    judge(*X_WR, room.p_WL(), observation, illumination::locate_lamps(*board, lamp, observation), trials);
     setting.progress(
         fmt::format("{} degrees, {} of the tips' shadows: {} of {}", angle_deg, tips, trials.asked, wanted));
   }
@@ -108,10 +111,8 @@ Result<Report> table_5_1(const Setting& setting) {
         report.rows.push_back(
             mean_row(name, "error, height triangulated", "cm", trials->triangulated_cm, setting.seed));
       }
-      for (std::size_t why = 0; why < trials->unanswered.size(); ++why) {
-        if (trials->unanswered[why] == 0) continue;
-        report.notes.push_back(fmt::format("{}: {} of {} not answered: {}.", name, trials->unanswered[why],
-                                           trials->asked, illumination::name_of(static_cast<LampStatus>(why))));
+      for (const auto& [why, count] : trials->unanswered) {
+        report.notes.push_back(fmt::format("{}: {} of {} not answered: {}.", name, count, trials->asked, why));
       }
     }
   }

@@ -1,0 +1,136 @@
+#include "pipeline/illumination/switch_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "platform/image_view.h"
+
+namespace cgsr::illumination {
+namespace {
+
+constexpr double kLeastDifference = 4.0;  // grey levels, mean over the board
+constexpr double kMostMoved_m = 0.004;
+constexpr double kMostTurned_rad = 0.006;
+constexpr double kBound = 13.8;  // chi-square, 2 degrees of freedom: one in a thousand is further off
+constexpr int kAlong = 6;        // places of the board that are looked at
+constexpr int kAcross = 12;
+
+}  // namespace
+
+std::string_view name_of(SwitchVerdict verdict) {
+  switch (verdict) {
+    case SwitchVerdict::kAgrees:
+      return "agrees";
+    case SwitchVerdict::kDisagrees:
+      return "shadows fall elsewhere";
+    case SwitchVerdict::kNoShadow:
+      return "no shadow";
+    case SwitchVerdict::kNoDifference:
+      return "the lamp did not switch";
+    case SwitchVerdict::kMoved:
+      return "the camera moved";
+    case SwitchVerdict::kNoImage:
+      return "no image";
+    case SwitchVerdict::kNotRegistered:
+      return "board and probes not found";
+  }
+  return "unknown";
+}
+
+SwitchChecker::SwitchChecker(const Board& board, const ProbesParameters& parameters, double lamp_height_m)
+    : board_(board),
+      parameters_(parameters),
+      difference_(static_cast<std::size_t>(board.camera.width_px) * static_cast<std::size_t>(board.camera.height_px)) {
+  finders_.reserve(static_cast<std::size_t>(board.probes));
+  for (int i = 0; i < board.probes; ++i) finders_.emplace_back(board, i, parameters.shadow, lamp_height_m);
+}
+
+SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, const Eigen::Vector3d& p_RL,
+                                 double lamp_sigma_m) {
+  SwitchCheck check;
+  for (const ImageView* image : {&on, &off}) {
+    if (image->empty() || image->format == PixelFormat::kBgr24 || image->width_px != board_.camera.width_px ||
+        image->height_px != board_.camera.height_px || image->format != on.format)
+      return check;
+  }
+  const LumaView bright(on);
+  const Registration registration = register_board(board_, parameters_.registration, bright, board_.X_BC, false);
+  if (!registration.good) {
+    check.verdict = SwitchVerdict::kNotRegistered;
+    return check;
+  }
+  // In the dark image there may be too little light to see the board; where it is seen, it is in the same place.
+  const Registration before = register_board(board_, parameters_.registration, LumaView(off), registration.X_BC, true);
+  if (before.good && before.cones == registration.cones) {
+    const auto step = geometry::step_between(registration.X_BC, before.X_BC);
+    if (step.head<3>().norm() > kMostMoved_m || step.tail<3>().norm() > kMostTurned_rad) {
+      check.verdict = SwitchVerdict::kMoved;
+      return check;
+    }
+  }
+  const int pixel_bytes = bytes_per_pixel(on.format);
+  const int width = on.width_px;
+  for (int y = 0; y < on.height_px; ++y) {
+    const std::uint8_t* a = on.row(y);
+    const std::uint8_t* b = off.row(y);
+    std::uint8_t* out = difference_.data() + static_cast<std::ptrdiff_t>(y) * width;
+    for (int x = 0; x < width; ++x)
+      out[x] = static_cast<std::uint8_t>(std::max(0, int{a[pixel_bytes * x]} - int{b[pixel_bytes * x]}));
+  }
+  const LumaView difference(ImageView{difference_.data(), width, on.height_px, width, PixelFormat::kGrey8});
+  const BoardView view(board_.camera, registration.X_BC);
+  double sum = 0.0;
+  int places = 0;
+  for (int i = 0; i < kAlong; ++i) {
+    for (int k = 0; k < kAcross; ++k) {
+      const Eigen::Vector3d p_B(((i + 0.5) / kAlong - 0.5) * board_.depth_m,
+                                ((k + 0.5) / kAcross - 0.5) * board_.width_m, 0.0);
+      const auto pixel = view.pixel(p_B);
+      if (!pixel.in_front || !difference.holds(pixel.at.x(), pixel.at.y())) continue;
+      sum += static_cast<double>(difference.at(pixel.at.x(), pixel.at.y()));
+      ++places;
+    }
+  }
+  check.difference = places > 0 ? sum / places : 0.0;
+  if (check.difference < kLeastDifference) {
+    check.verdict = SwitchVerdict::kNoDifference;
+    return check;
+  }
+  const Eigen::Vector3d p_BL = board_.X_RB.inverse() * p_RL;
+  bool any = false;
+  bool all_agree = true;
+  for (std::size_t i = 0; i < finders_.size(); ++i) {
+    if ((registration.cones & (1 << i)) == 0 || p_BL.z() < board_.probe[i].p_BA.z() + 0.05) continue;
+    const auto found = finders_[i].find(difference, registration.X_BC, 256.0);
+    const auto model = shadow_of(p_BL, board_.probe[i].p_BA);
+    // The turn of the board moves the lamp in its frame.
+    Eigen::Matrix3d cross;
+    cross << 0, -p_BL.z(), p_BL.y(), p_BL.z(), 0, -p_BL.x(), -p_BL.y(), p_BL.x(), 0;
+    const Eigen::Matrix<double, 2, 3> by_turn = model.by_lamp * cross;
+    double nearest = -1.0;
+    for (int k = 0; k < found.count; ++k) {
+      const ProbeShadow& shadow = found.shadow[static_cast<std::size_t>(k)];
+      const Eigen::Matrix2d V = shadow.covariance +
+                                shadow.by_pose * registration.covariance * shadow.by_pose.transpose() +
+                                board_.place_sigma_m * board_.place_sigma_m * model.by_tip * model.by_tip.transpose() +
+                                board_.turn_sigma_rad * board_.turn_sigma_rad * by_turn * by_turn.transpose() +
+                                lamp_sigma_m * lamp_sigma_m * model.by_lamp * model.by_lamp.transpose();
+      const Eigen::Vector2d off_m = shadow.p_BS - model.p_BS;
+      const double chi2 = off_m.dot(V.inverse() * off_m);
+      if (nearest >= 0.0 && chi2 >= nearest) continue;
+      nearest = chi2;
+      check.off_m[i] = off_m;
+      check.chi2[i] = chi2;
+      check.seen[i] = true;
+    }
+    if (!check.seen[i]) continue;
+    any = true;
+    all_agree = all_agree && check.chi2[i] < kBound;
+  }
+  check.verdict = !any ? SwitchVerdict::kNoShadow : all_agree ? SwitchVerdict::kAgrees : SwitchVerdict::kDisagrees;
+  return check;
+}
+
+}  // namespace cgsr::illumination

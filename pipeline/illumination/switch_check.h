@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "pipeline/illumination/lamp.h"
+#include "pipeline/illumination/probe_observation.h"
+
+namespace cgsr::illumination {
+
+enum class SwitchVerdict : std::uint8_t {
+  kAgrees,        ///< every shadow that the lamp throws falls where board and probes say.
+  kDisagrees,     ///< one does not: a probe stands elsewhere than its calibration says, or the lamp does.
+  kNoShadow,      ///< the lamp makes a difference, and no probe's shadow is in it.
+  kNoDifference,  ///< the images are the same: the lamp did not switch.
+  kMoved,         ///< the camera moved between both images.
+  kNoImage,       ///< one is missing, of another size, or without brightness.
+  kNotRegistered  ///< board and cones are not to be found in the image with the lamp.
+};
+std::string_view name_of(SwitchVerdict verdict);
+
+struct SwitchCheck {
+  SwitchVerdict verdict = SwitchVerdict::kNoImage;
+  std::array<bool, kMostProbes> seen{};
+  std::array<Eigen::Vector2d, kMostProbes> off_m{};  ///< of the shadow from where it should fall, board's frame.
+  std::array<double, kMostProbes> chi2{};            ///< of that, 2 degrees of freedom.
+  double difference = 0.0;                           ///< grey levels, mean over the board.
+};
+
+/// An active check of the probes: what a lamp alone does is the difference of an image with it and one without, in which no other light's
+/// shadow, no texture and no dirt is left. Where the lamp is known, its shadows say whether board and probes still are as calibrated.
+///
+/// Allocates when constructed, not when it checks. Threads: one.
+class SwitchChecker {
+ public:
+  SwitchChecker(const Board& board, const ProbesParameters& parameters, double lamp_height_m);
+
+  /// \param on, off  with the lamp and without it, from the same place. \param p_RL  where the lamp is, robot frame.
+  /// \param lamp_sigma_m  how well that is known, each coordinate.
+  SwitchCheck check(const ImageView& on, const ImageView& off, const Eigen::Vector3d& p_RL, double lamp_sigma_m);
+
+ private:
+  Board board_;
+  ProbesParameters parameters_;
+  std::vector<ShadowFinder> finders_;
+  std::vector<std::uint8_t> difference_;
+};
+
+}  // namespace cgsr::illumination

@@ -1,0 +1,256 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "pipeline/illumination/lamp.h"
+#include "tools/lab/experiment.h"
+#include "tools/lab/probe_room.h"
+
+namespace cgsr::lab {
+namespace {
+
+using Eigen::Vector3d;
+using illumination::LampStatus;
+
+constexpr int kTrials = 1000;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kLumens = 600.0;
+constexpr double kHeightSigma_m = 0.02;
+constexpr double kChi2 = 11.345;  // three degrees of freedom, 99 %
+constexpr int kMostDraws = 400;   // for one trial
+
+struct Case {
+  const char* name;
+  bool lamp_to_find = true;
+  bool second_lamp = false;
+  bool behind = false;
+  bool flicker = false;
+  bool moves = false;
+  bool hand = false;
+};
+
+constexpr std::array kCases{
+    Case{"one lamp", true},
+    Case{"no lamp", false},
+    Case{"two lamps", true, true},
+    Case{"lamp behind", true, false, true},
+    Case{"flicker", true, false, false, true},
+    Case{"a lamp that moves", true, false, false, false, true},
+    Case{"a hand's shadow", true, false, false, false, false, true},
+};
+
+struct Outcome {
+  int asked = 0;
+  int answered = 0;
+  int images = 0;  // with an answer
+  int within_bound = 0;
+  double squares = 0.0;
+  std::vector<double> error_cm;
+  std::vector<double> sigma_cm;
+  std::map<std::string, int> unanswered;
+};
+
+// A straight shadow across the lower part of an image, as a hand's or an arm's: what is on one side is darker.
+void darken(std::vector<std::uint8_t>& yuyv, int width_px, int height_px, Random& random) {
+  const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  const double offset = random.uniform(-200.0, 200.0);
+  const double factor = random.uniform(0.75, 0.9);
+  for (int y = 240; y < height_px; ++y) {
+    for (int x = 0; x < width_px; ++x) {
+      const double d = c * (x - 320) + s * (y - 380) - offset;
+      const double share = std::clamp(0.5 + d / 8.0, 0.0, 1.0);
+      auto& luma = yuyv[std::size_t{2} * static_cast<std::size_t>(y * width_px + x)];
+      luma = static_cast<std::uint8_t>(std::lround(16.0 + (luma - 16.0) * (1.0 - share * (1.0 - factor))));
+    }
+  }
+}
+
+struct Standing {
+  sim::Pose X_WR;
+  bool found = false;
+};
+
+Standing stand(ProbeRoom& room, const Case& which, double angle_deg, Random& random) {
+  for (int draw = 0; draw < kMostDraws; ++draw) {
+    const auto X_WR = room.standpoint(angle_deg * kRadPerDeg, random);
+    if (!X_WR) return {};
+    if (which.behind && (X_WR->inverse() * room.p_WL()).x() > -0.1) continue;
+    const auto truth = room.truth(*X_WR);
+    if (std::ranges::any_of(truth, [](const sim::ProbeShadow& shadow) { return shadow.visible; })) return {*X_WR, true};
+  }
+  return {};
+}
+
+Result<void> judge(ProbeRoom& room, const Case& which, double angle_deg, Random& random, Outcome& outcome) {
+  Vector3d p_WL = room.p_WL();
+  if (which.moves) {
+    p_WL = room.p_WL() + Vector3d(random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), 0.0);
+    room.move_lamp(0, p_WL);
+  }
+  const Standing standing = stand(room, which, angle_deg, random);
+  if (!standing.found) return {};
+  room.scale_light(which.flicker ? random.uniform(0.4, 1.6) : 1.0);
+  room.switch_lamp(0, which.lamp_to_find);
+  const auto seed = static_cast<std::uint32_t>(random.next());
+  const RobotCopy copy = RobotCopy::measured(room, seed);
+  const auto board = illumination::make_board(copy.board, copy.X_RC, copy.camera);
+  if (!board) return tl::unexpected(board.error());
+  illumination::LampParameters lamp;
+  lamp.height_sigma_m = kHeightSigma_m;
+  lamp.height_m += kHeightSigma_m * random.normal();
+  illumination::ProbesParameters probes;
+  probes.board = copy.board;
+  illumination::ProbeObserver observer(*board, probes, lamp.height_m - board->X_RB.translation().z());
+  ImageView image = room.shoot(standing.X_WR, seed, 0);
+  std::vector<std::uint8_t> darkened;
+  if (which.hand) {
+    darkened.assign(image.data, image.data + image.stride_bytes * image.height_px);
+    darken(darkened, image.width_px, image.height_px, random);
+    image.data = darkened.data();
+  }
+  const auto observation = observer.observe(image);
+  const auto lamps = illumination::locate_lamps(*board, lamp, observation);
+  room.switch_lamp(0, true);
+  ++outcome.asked;
+  bool answered = false;
+  for (int i = 0; i < lamps.count; ++i) {
+    const auto& estimate = lamps.lamp[static_cast<std::size_t>(i)];
+    if (estimate.status != LampStatus::kFound) continue;
+    answered = true;
+    Vector3d off = estimate.p_RL - standing.X_WR.inverse() * p_WL;
+    if (which.second_lamp) {
+      const Vector3d other = estimate.p_RL - standing.X_WR.inverse() * room.p_WL(1);
+      if (other.norm() < off.norm()) off = other;
+    }
+    ++outcome.images;
+    outcome.error_cm.push_back(100.0 * off.norm());
+    outcome.squares += 1e4 * off.squaredNorm();
+    outcome.sigma_cm.push_back(100.0 * std::sqrt(estimate.covariance.trace()));
+    if (off.dot(estimate.covariance.inverse() * off) < kChi2) ++outcome.within_bound;
+  }
+  if (answered) {
+    ++outcome.answered;
+  } else {
+    const bool seen = observation.status == illumination::ObservationStatus::kSeen;
+    ++outcome.unanswered[std::string(seen ? name_of(lamps.status) : name_of(observation.status))];
+  }
+  return {};
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials) {
+  Row out;
+  out.row = std::move(row);
+  out.quantity = std::move(quantity);
+  out.unit = std::move(unit);
+  out.ours = value;
+  out.trials = static_cast<int>(trials);
+  return out;
+}
+
+void report_case(const Case& which, const Outcome& outcome, Report& report) {
+  const char* const answered = which.lamp_to_find ? "answered" : "answered, wrongly";
+  report.rows.push_back(share_row(which.name, answered, outcome.answered, outcome.asked));
+  for (const auto& [why, count] : outcome.unanswered) {
+    if (!which.lamp_to_find) break;
+    report.notes.push_back(fmt::format("{}: {} of {} not answered: {}.", which.name, count, outcome.asked, why));
+  }
+  if (!which.lamp_to_find || outcome.images == 0) return;
+  const double rms = std::sqrt(outcome.squares / outcome.images);
+  const double sigma = median(outcome.sigma_cm);
+  report.rows.push_back(share_row(which.name, "within its 99 % bound", outcome.within_bound, outcome.images));
+  report.rows.push_back(plain_row(which.name, "median error", "cm", median(outcome.error_cm), outcome.error_cm.size()));
+  report.rows.push_back(plain_row(which.name, "RMS error", "cm", rms, outcome.error_cm.size()));
+  report.rows.push_back(plain_row(which.name, "median stated sigma", "cm", sigma, outcome.sigma_cm.size()));
+  report.rows.push_back(plain_row(which.name, "sigma over RMS", "", sigma / rms, outcome.sigma_cm.size()));
+}
+
+}  // namespace
+
+Result<Report> lamp_cases(const Setting& setting) {
+  ProbeRoomLight light;
+  light.lumens = kLumens;
+  auto room = ProbeRoom::make(light);
+  if (!room) return tl::unexpected(room.error());
+  ProbeRoomLight two = light;
+  two.second_p_WL = Vector3d(4.2, 2.2, 2.75);
+  auto room_of_two = ProbeRoom::make(two);
+  if (!room_of_two) return tl::unexpected(room_of_two.error());
+  const int all = setting.trials.value_or(kTrials);
+  const int wanted = std::max(1, all / static_cast<int>(kCases.size() + 2));
+  Report report;
+  report.name = "lamp-cases";
+  report.title = fmt::format("lamps that are off, two, behind, flickering or moving, {} trials each", wanted);
+  report.config_sha256 = setting.config_sha256();
+  report.seed = setting.seed;
+  std::uint64_t label = 0;
+  for (const Case& which : kCases) {
+    Random random = Random(setting.seed).fork(++label);
+    Outcome outcome;
+    for (int trial = 0; trial < wanted; ++trial) {
+      auto& in = which.second_lamp ? **room_of_two : **room;
+      const double angle_deg = random.uniform(which.behind ? 15.0 : 20.0, which.behind ? 50.0 : 60.0);
+      if (auto judged = judge(in, which, angle_deg, random, outcome); !judged) return tl::unexpected(judged.error());
+      setting.progress(fmt::format("{}: {} of {}", which.name, trial + 1, wanted));
+    }
+    if (which.moves) (*room)->move_lamp(0, (*room)->p_WL());
+    report_case(which, outcome, report);
+  }
+  // Curves: lamps too weak and too strong, and angles that the table leaves out.
+  const auto sweep = [&](const std::string& title, const std::string& unit, const std::vector<double>& values,
+                         const std::function<double(double)>& angle_of,
+                         const std::function<double(double)>& factor_of) -> Result<void> {
+    Plot plot{title, unit, "", {{"answered", {}}, {"median error, dm", {}}}};
+    const int each = std::max(2, wanted / static_cast<int>(values.size()));
+    for (const double value : values) {
+      Random random = Random(setting.seed).fork(++label);
+      Outcome outcome;
+      for (int trial = 0; trial < each; ++trial) {
+        // judge() sets the light itself: a flicker of exactly this factor.
+        (*room)->set_base_light(factor_of(value));
+        if (auto judged = judge(**room, kCases[0], angle_of(value), random, outcome); !judged)
+          return tl::unexpected(judged.error());
+        setting.progress(fmt::format("{} {} {}: {} of {}", title, value, unit, trial + 1, each));
+      }
+      (*room)->set_base_light(1.0);
+      if (outcome.asked == 0) continue;
+      plot.curves[0].points.push_back({value, static_cast<double>(outcome.answered) / outcome.asked, {}});
+      const std::string name = fmt::format("{} {}", value, unit);
+      report.rows.push_back(share_row(name, "answered", outcome.answered, outcome.asked));
+      if (outcome.error_cm.empty()) continue;
+      plot.curves[1].points.push_back({value, 0.1 * median(outcome.error_cm), {}});
+      report.rows.push_back(plain_row(name, "median error", "cm", median(outcome.error_cm), outcome.error_cm.size()));
+    }
+    report.plots.push_back(std::move(plot));
+    return {};
+  };
+  const auto strengths = sweep(
+      "A lamp's strength, light at 35 degrees", "lm", {10, 30, 100, 300, 1000, 3000, 10000},
+      [](double) { return 35.0; }, [](double lumens) { return lumens / kLumens; });
+  if (!strengths) return tl::unexpected(strengths.error());
+  const auto angles = sweep(
+      "The light's angle", "deg", {8, 14, 20, 40, 60, 65, 70}, [](double angle) { return angle; },
+      [](double) { return 1.0; });
+  if (!angles) return tl::unexpected(angles.error());
+  report.notes.emplace_back(
+      "One image a trial, light from 20 to 60 degrees, standpoints among those from where at least one tip's shadow "
+      "can be seen; the vision's copy is drawn anew in each trial as in table-5.1, the lamp's height with 2 cm.");
+  report.notes.emplace_back("Two lamps: each answer against the nearer of both.");
+  return report;
+}
+
+}  // namespace cgsr::lab
