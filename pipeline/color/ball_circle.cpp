@@ -25,7 +25,7 @@ constexpr double kOnCircle_px = 1.0;
 constexpr double kSlack = 0.15;  // a circle may be so much larger or smaller than what can be
 constexpr int kAreaPoints = 64;
 constexpr int kRingPoints = 48;
-constexpr double kLeastInImage = 0.4;  // of the circumference
+constexpr double kLeastInImage = 0.5;  // of the circumference
 constexpr double kGoldenTurn = 2.399963229728653;
 constexpr double kWholeTurn = 6.283185307179586;
 

@@ -1,23 +1,22 @@
 #include "pipeline/color/ball_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "pipeline/color/learn.h"
-#include "pipeline/color/light_estimate.h"
 #include "pipeline/imaging/color_code.h"
 
 namespace cgsr::color {
 namespace {
 
-constexpr double kCore = 0.92;         // of the radius: at the rim the background shines in
-constexpr double kLeastShare = 0.004;  // of the circle, for a colour to be one of the ball's
+constexpr double kCore = 0.8;         // of the radius: at the rim the background shines in
+constexpr double kLeastShare = 0.012;  // of the circle, for a colour to be one of the ball's
 constexpr double kDarkestLight = 0.01;
-constexpr int kLightSteps = 7;   // per channel, between those of the grid
-constexpr int kFactorSteps = 5;  // from the least factor to the largest
+constexpr int kLightSteps = 5;   // per channel, about one of the grid
+constexpr int kFactorSteps = 9;  // from the least factor to
+constexpr double kSoft = 0.85;   // what is hardly dark
 
 using Textures = std::vector<imaging::Rgb>;
 using Codes = std::vector<int>;
@@ -80,7 +79,7 @@ void set_histograms(const std::vector<Textures>& samples, ColorModel& model) {
   }
 }
 
-/// Half the step of the grid that the lights came from, give or take; the whole reach of a channel with one light.
+/// Half the step of the grid that the lights came from.
 double half_step(const std::vector<Light>& lights) {
   std::vector<double> reds;
   for (const Light& light : lights) reds.push_back(light.r);
@@ -88,31 +87,6 @@ double half_step(const std::vector<Light>& lights) {
   double step = 0.0;
   for (std::size_t i = 1; i < reds.size(); ++i) step = std::max(step, reds[i] - reds[i - 1]);
   return 0.5 * step + 1e-6;
-}
-
-/// Lights between those of the grid, but not where the grid leaves one out.
-std::vector<Light> dense_lights(const ColorModel& model) {
-  Light low = model.lights.front();
-  Light high = low;
-  for (const Light& light : model.lights) {
-    low = {std::min(low.r, light.r), std::min(low.g, light.g), std::min(low.b, light.b)};
-    high = {std::max(high.r, light.r), std::max(high.g, light.g), std::max(high.b, light.b)};
-  }
-  const double reach = half_step(model.lights);
-  const auto between = [](double a, double b, int i) { return a + (b - a) * i / (kLightSteps - 1); };
-  std::vector<Light> lights;
-  for (int r = 0; r < kLightSteps; ++r) {
-    for (int g = 0; g < kLightSteps; ++g) {
-      for (int b = 0; b < kLightSteps; ++b) {
-        const Light light{between(low.r, high.r, r), between(low.g, high.g, g), between(low.b, high.b, b)};
-        const Light nearest = nearest_of(model, light);
-        const double off =
-            std::max({std::abs(nearest.r - light.r), std::abs(nearest.g - light.g), std::abs(nearest.b - light.b)});
-        if (off <= reach) lights.push_back(light);
-      }
-    }
-  }
-  return lights;
 }
 
 struct Levels {
@@ -144,16 +118,24 @@ void mark(const imaging::Rgb& color, std::uint8_t kind, std::vector<std::uint8_t
   }
 }
 
-std::vector<std::uint8_t> kinds_of_codes(const Textures& textures, const std::vector<Light>& lights, double least,
-                                         double most) {
+/// \param reach  how far other lights may be from this one in each channel.
+std::vector<std::uint8_t> kinds_of_codes(const Textures& textures, const Light& light, double reach,
+                                         double least_factor) {
   std::vector<std::uint8_t> of_code(imaging::kColorCodes, 0);
-  for (const Light& light : lights) {
-    for (const imaging::Rgb& texture : textures) {
-      const imaging::Rgb color = lit(texture, light);
-      mark(color, BallModel::kBright, of_code);
-      for (int i = 0; i < kFactorSteps; ++i) {
-        const double factor = least + (most - least) * i / (kFactorSteps - 1);
-        mark({factor * color.r, factor * color.g, factor * color.b}, BallModel::kDark, of_code);
+  const auto near = [reach](double channel, int step) {
+    return std::clamp(channel + reach * (2.0 * step / (kLightSteps - 1) - 1.0), kDarkestLight, 1.0);
+  };
+  for (const imaging::Rgb& texture : textures) {
+    for (int r = 0; r < kLightSteps; ++r) {
+      for (int g = 0; g < kLightSteps; ++g) {
+        for (int b = 0; b < kLightSteps; ++b) {
+          const imaging::Rgb color = lit(texture, {near(light.r, r), near(light.g, g), near(light.b, b)});
+          mark(color, BallModel::kBright, of_code);
+          for (int i = 0; i < kFactorSteps; ++i) {
+            const double factor = least_factor + (kSoft - least_factor) * i / (kFactorSteps - 1);
+            mark({factor * color.r, factor * color.g, factor * color.b}, BallModel::kDark, of_code);
+          }
+        }
       }
     }
   }
@@ -196,8 +178,9 @@ Result<BallModel> make_ball_model(const ColorModel& model, std::span<const doubl
   }
   set_histograms(samples, ball.bright);
   set_histograms(samples, ball.dark);
-  const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
-  ball.of_code = kinds_of_codes(main, dense_lights(model), *least, *most);
+  const double least = *std::min_element(factors.begin(), factors.end());
+  const double reach = half_step(model.lights);
+  for (const Light& light : model.lights) ball.of_code.push_back(kinds_of_codes(main, light, reach, least));
   ball.diameter_px = 0.5 * (model.object_box.width + model.object_box.height);
   return ball;
 }

@@ -21,6 +21,7 @@ constexpr double kStillOwn = 0.8;   // of what the colours inside must be at fir
 constexpr double kMoreAround = 0.15;  // of them may be around a followed one
 constexpr double kBetter = 0.12;      // in score, that a ball elsewhere must be
 constexpr double kInertia = 0.7;      // of the motion from image to image
+constexpr double kUnlike = 1.0;       // a divergence above all that can be
 constexpr int kLeastSide_px = 32;     // of what is searched for dark histograms
 
 Box core_of(const Circle& circle) {
@@ -135,15 +136,26 @@ struct IntegratedTracker::State {
         bright_labels(max_width, max_height),
         dark_labels(max_width, max_height) {}
 
+  struct Likeness {
+    double divergence = kUnlike;
+    int light = 0;  ///< of the bright or dark model.
+    bool dark = false;
+  };
+  struct Answer {
+    CircleFit fit;
+    Likeness likeness;
+  };
+
   BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget, const SizeRange& sizes);
   bool search(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes, BallSighting& seen);
   void search_dark(const BallPixels& pixels, SearchRequest request, BallSighting& seen);
-  [[nodiscard]] CircleFit follow(const BallPixels& pixels, const SizeRange& sizes) const;
-  [[nodiscard]] CircleFit find(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes) const;
+  [[nodiscard]] CircleFit follow(BallPixels pixels, const SizeRange& sizes) const;
+  [[nodiscard]] Answer find(BallPixels pixels, WorkBudget& budget, const SizeRange& sizes);
+  [[nodiscard]] const std::uint8_t* colors_under(std::size_t of_light) const { return ball.of_code[of_light].data(); }
   [[nodiscard]] bool is_found(const CircleFit& fit) const;
   [[nodiscard]] bool is_kept(const CircleFit& fit) const;
-  void remember(const Circle& circle);
-  void judge(const BallPixels& pixels, BallSighting& seen);
+  void remember(const Answer& answer);
+  [[nodiscard]] Likeness likeness_of(const Circle& of);
 
   IntegratedParameters parameters;
   BallModel ball;
@@ -163,6 +175,7 @@ struct IntegratedTracker::State {
   // From image to image.
   bool located = false;
   Circle circle;
+  std::size_t light = 0;  // of the grid, under which it was seen last
   double motion_x_px = 0.0;
   double motion_y_px = 0.0;
   int images_without = 0;
@@ -225,7 +238,8 @@ void IntegratedTracker::State::search_dark(const BallPixels& pixels, SearchReque
 }
 
 /// Near where it was last, moving on as it moved.
-CircleFit IntegratedTracker::State::follow(const BallPixels& pixels, const SizeRange& sizes) const {
+CircleFit IntegratedTracker::State::follow(BallPixels pixels, const SizeRange& sizes) const {
+  pixels.of_code = colors_under(light);
   const double diameter = 2.0 * circle.radius_px;
   const SizeRange near{std::max(sizes.least_px, diameter / kGrowth), std::min(sizes.most_px, diameter * kGrowth)};
   if (near.least_px > near.most_px) return {};
@@ -235,23 +249,30 @@ CircleFit IntegratedTracker::State::follow(const BallPixels& pixels, const SizeR
 }
 
 /// The best circle at one of the windows of both searches.
-CircleFit IntegratedTracker::State::find(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes) const {
-  CircleFit best;
+IntegratedTracker::State::Answer IntegratedTracker::State::find(BallPixels pixels, WorkBudget& budget,
+                                                                const SizeRange& sizes) {
+  Answer best;
   for (const SearchResult* matches : {&bright_matches, &dark_matches}) {
     for (int i = 0; i < matches->count; ++i) {
-      const Box& box = matches->matches[static_cast<std::size_t>(i)].box;
+      const Match& match = matches->matches[static_cast<std::size_t>(i)];
+      const Box& box = match.box;
       const double x = box.x + 0.5 * box.width;
       const double y = box.y + 0.5 * box.height;
-      if (best.agreement > 0.0 && covers(best.circle, x, y)) continue;
+      if (best.fit.agreement > 0.0 && covers(best.fit.circle, x, y)) continue;
       if (!budget.grant()) return best;
+      pixels.of_code = colors_under(static_cast<std::size_t>(match.light) % ball.of_code.size());
       const CircleFit fit = fit_circle(pixels, x, y, sizes);
-      if (is_found(fit) && fit.score() > best.score()) best = fit;
+      if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
+      const Likeness likeness = likeness_of(fit.circle);
+      const double most = likeness.dark ? parameters.max_dark_divergence : parameters.max_divergence;
+      if (likeness.divergence <= most) best = {fit, likeness};
     }
   }
   return best;
 }
 
-void IntegratedTracker::State::remember(const Circle& now) {
+void IntegratedTracker::State::remember(const Answer& answer) {
+  const Circle& now = answer.fit.circle;
   if (located && images_without == 0) {
     motion_x_px = kInertia * (now.x_px - circle.x_px);
     motion_y_px = kInertia * (now.y_px - circle.y_px);
@@ -260,41 +281,42 @@ void IntegratedTracker::State::remember(const Circle& now) {
     motion_y_px = 0.0;
   }
   circle = now;
+  light = static_cast<std::size_t>(answer.likeness.light) % ball.of_code.size();
   located = true;
   images_without = 0;
 }
 
-/// Which histogram fits the ball best.
-void IntegratedTracker::State::judge(const BallPixels& pixels, BallSighting& seen) {
-  Box core = core_of(seen.circle);
+/// Which histogram fits best what is inside a circle.
+IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const Circle& of) {
+  Box core = core_of(of);
   const auto bright = bright_divergence.of(bright_labels, core);
-  seen.divergence = bright.divergence;
-  seen.light = ball.bright.lights[static_cast<std::size_t>(bright.light)];
-  seen.shade_share = shade_share(pixels, seen.circle);
-  if (dark_part.width == 0) return;
+  Likeness likeness{bright.divergence, bright.light, false};
+  if (dark_part.width == 0) return likeness;
   core.x -= dark_part.left;
   core.y -= dark_part.top;
   const auto dark = dark_divergence.of(dark_labels, core);
-  if (dark.divergence >= bright.divergence) return;
-  seen.divergence = dark.divergence;
-  seen.light = ball.dark.lights[static_cast<std::size_t>(dark.light)];
-  seen.dark = true;
+  if (dark.divergence < likeness.divergence) likeness = {dark.divergence, dark.light, true};
+  return likeness;
 }
 
 BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
                                             const SizeRange& sizes) {
   BallSighting seen;
   seen.mask_used = can_be_used(mask, image);
-  const BallPixels pixels{image, ball.of_code.data(), seen.mask_used ? mask : ShadeMaskView{}};
+  const BallPixels pixels{image, colors_under(light), seen.mask_used ? mask : ShadeMaskView{}};
   if (!search(pixels, budget, sizes, seen)) return seen;
-  CircleFit fit;
-  if (located) fit = follow(pixels, sizes);
-  bool is_there = located && is_kept(fit);
-  if (!is_there || !is_found(fit)) {
-    const CircleFit elsewhere = find(pixels, budget, sizes);
-    if (elsewhere.agreement > 0.0 && (!is_there || elsewhere.score() > fit.score() + kBetter)) {
-      if (!covers(circle, elsewhere.circle.x_px, elsewhere.circle.y_px)) images_without = 1;  // it jumped: no motion
-      fit = elsewhere;
+  Answer answer;
+  if (located) {
+    answer.fit = follow(pixels, sizes);
+    if (is_kept(answer.fit)) answer.likeness = likeness_of(answer.fit.circle);
+  }
+  bool is_there = answer.likeness.divergence <= parameters.kept_divergence;
+  if (!is_there || !is_found(answer.fit)) {
+    const Answer elsewhere = find(pixels, budget, sizes);
+    const bool is_better = elsewhere.fit.score() > (is_there ? answer.fit.score() + kBetter : 0.0);
+    if (is_better) {
+      if (!covers(circle, elsewhere.fit.circle.x_px, elsewhere.fit.circle.y_px)) images_without = 1;  // no motion
+      answer = elsewhere;
       is_there = true;
     }
   }
@@ -302,13 +324,17 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
     if (++images_without > parameters.lost_after_images) located = false;
     return seen;
   }
-  remember(fit.circle);
-  seen.found = true;
-  seen.circle = fit.circle;
-  seen.agreement = fit.agreement;
+  remember(answer);
   const Box whole_image{0.0, 0.0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
-  seen.box = intersection(box_of(fit.circle), whole_image);
-  judge(pixels, seen);
+  seen.found = true;
+  seen.circle = circle;
+  seen.box = intersection(box_of(circle), whole_image);
+  seen.agreement = answer.fit.agreement;
+  seen.divergence = answer.likeness.divergence;
+  seen.dark = answer.likeness.dark;
+  const ColorModel& model = seen.dark ? ball.dark : ball.bright;
+  seen.light = model.lights[static_cast<std::size_t>(answer.likeness.light)];
+  seen.shade_share = shade_share(pixels, circle);
   return seen;
 }
 

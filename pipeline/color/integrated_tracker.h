@@ -43,8 +43,9 @@ struct BallParameters {
 /// The section [integrated] of a robot's file.
 struct IntegratedParameters {
   std::array<double, 3> dark_factors{0.25, 0.40, 0.55};
-  double max_divergence = 0.30;
-  double max_dark_divergence = 0.30;
+  double max_divergence = 0.22;
+  double max_dark_divergence = 0.22;
+  double kept_divergence = 0.28;
   int candidates = 6;
   int lost_after_images = 3;
   SearchParameters search{Divergence::kJensenShannon, BinWeights::kPlain, 0.1, 3, 1.5, 8.0, 6};
@@ -57,6 +58,7 @@ struct IntegratedParameters {
     visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
                  "a window farther than this from every bright histogram is not looked at");
     visit.number("max_dark_divergence", self.max_dark_divergence, {0.0, 0.7}, "nat", "the same of the dark ones");
+    visit.number("kept_divergence", self.kept_divergence, {0.0, 0.7}, "nat", "the same of a ball that is followed");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
                  "windows of each of the two searches of which the shape is looked at");
     visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",

@@ -23,6 +23,9 @@ struct BallScore {
   int brown = 0;            ///< images with the brown ball in view.
   int brown_tracked = 0;    ///< and it was taken for the orange one.
 
+  int right = 0;  ///< images answered as they are: IoU above 0.5, or nothing said where there is nothing.
+
+  [[nodiscard]] double right_share() const { return static_cast<double>(right) / std::max(1, images + absent); }
   [[nodiscard]] double mean(double sum) const { return images > 0 ? sum / images : 0.0; }
   /// Images in which something else was taken for the ball, as a share of all.
   [[nodiscard]] double false_share() const {
@@ -36,7 +39,7 @@ struct BallScore {
     }
     if (!orange) {
       ++absent;
-      if (said) ++found_in_absent;
+      ++(said ? found_in_absent : right);
       return;
     }
     ++images;
@@ -45,6 +48,7 @@ struct BallScore {
     precision += one.precision;
     iou += one.iou;
     if (one.found) ++found;
+    if (one.success) ++right;
     if (one.found && one.iou <= 0.0) ++elsewhere;
   }
 
@@ -57,6 +61,7 @@ struct BallScore {
     elsewhere += other.elsewhere;
     absent += other.absent;
     found_in_absent += other.found_in_absent;
+    right += other.right;
     brown += other.brown;
     brown_tracked += other.brown_tracked;
   }
