@@ -166,6 +166,7 @@ struct IntegratedTracker::State {
   imaging::ReducedImage bright_labels;
   imaging::ReducedImage dark_labels;  // of dark_part
   SizeRange usual_sizes;
+  double size_step = 1.0;
 
   // Of the image under way.
   Part dark_part;
@@ -197,9 +198,9 @@ bool IntegratedTracker::State::search(const BallPixels& pixels, WorkBudget& budg
                                       BallSighting& seen) {
   bright_matches = {};
   dark_matches = {};
-  const double step = parameters.search.sizes > 2 ? parameters.search.size_step : 1.0;
+  // The smallest window fits into the smallest ball, the others are larger by one step each.
   SearchRequest request;
-  request.width_px = std::max(4.0, kCoreSide * (located ? 2.0 * circle.radius_px : sizes.least_px * step));
+  request.width_px = std::max(4.0, kCoreSide * sizes.least_px * std::pow(size_step, (parameters.search.sizes - 1) / 2));
   request.height_px = request.width_px;
   request.max_divergence = parameters.max_divergence;
   request.candidates = parameters.candidates;
@@ -211,7 +212,6 @@ bool IntegratedTracker::State::search(const BallPixels& pixels, WorkBudget& budg
   seen.bright_windows = bright_matches.windows;
   seen.bright_examined = bright_matches.examined;
   seen.exact = bright_matches.exact;
-  request.max_divergence = parameters.max_dark_divergence;
   search_dark(pixels, request, seen);
   return true;
 }
@@ -264,8 +264,7 @@ IntegratedTracker::State::Answer IntegratedTracker::State::find(BallPixels pixel
       const CircleFit fit = fit_circle(pixels, x, y, sizes);
       if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
       const Likeness likeness = likeness_of(fit.circle);
-      const double most = likeness.dark ? parameters.max_dark_divergence : parameters.max_divergence;
-      if (likeness.divergence <= most) best = {fit, likeness};
+      if (likeness.divergence <= parameters.found_divergence) best = {fit, likeness};
     }
   }
   return best;
@@ -345,15 +344,20 @@ Result<IntegratedTracker> IntegratedTracker::create(const ColorModel& model, con
   if (!(parameters.ball.nearest_m < parameters.ball.farthest_m)) {
     return fail("the ball's nearest_m is not below its farthest_m");
   }
-  auto bright = WindowSearch::create(ball->bright, parameters.search, max_width_px, max_height_px);
-  if (!bright) return tl::unexpected(bright.error());
-  auto dark = WindowSearch::create(ball->dark, parameters.search, max_width_px, max_height_px);
-  if (!dark) return tl::unexpected(dark.error());
   const double learned_px = ball->diameter_px;
+  const SizeRange usual_sizes = focal_px > 0.0 ? projected_size(parameters.ball, focal_px)
+                                               : SizeRange{learned_px / kSizeLimit, learned_px * kSizeLimit};
+  SearchParameters search = parameters.search;
+  search.size_step = std::clamp(
+      std::pow(usual_sizes.most_px / usual_sizes.least_px, 1.0 / std::max(1, parameters.search.sizes - 1)), 1.01, 2.0);
+  auto bright = WindowSearch::create(ball->bright, search, max_width_px, max_height_px);
+  if (!bright) return tl::unexpected(bright.error());
+  auto dark = WindowSearch::create(ball->dark, search, max_width_px, max_height_px);
+  if (!dark) return tl::unexpected(dark.error());
   auto state = std::make_unique<State>(std::move(*ball), parameters, std::move(*bright), std::move(*dark), max_width_px,
                                        max_height_px);
-  state->usual_sizes = focal_px > 0.0 ? projected_size(parameters.ball, focal_px)
-                                      : SizeRange{learned_px / kSizeLimit, learned_px * kSizeLimit};
+  state->usual_sizes = usual_sizes;
+  state->size_step = search.size_step;
   return IntegratedTracker(std::move(state));
 }
 

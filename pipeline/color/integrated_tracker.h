@@ -43,12 +43,12 @@ struct BallParameters {
 /// The section [integrated] of a robot's file.
 struct IntegratedParameters {
   std::array<double, 3> dark_factors{0.25, 0.40, 0.55};
-  double max_divergence = 0.22;
-  double max_dark_divergence = 0.22;
+  double max_divergence = 0.33;
+  double found_divergence = 0.24;
   double kept_divergence = 0.28;
   int candidates = 6;
   int lost_after_images = 3;
-  SearchParameters search{Divergence::kJensenShannon, BinWeights::kPlain, 0.1, 3, 1.5, 8.0, 6};
+  SearchParameters search{Divergence::kJensenShannon, BinWeights::kPlain, 0.1, 4, 1.9, 8.0, 4};
   BallParameters ball;
 
   template <class Self, class Visitor>
@@ -56,14 +56,15 @@ struct IntegratedParameters {
     visit.numbers("dark_factors", self.dark_factors, {0.05, 1.0}, "",
                   "what the lights of the model are multiplied by where there may be shade");
     visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
-                 "a window farther than this from every bright histogram is not looked at");
-    visit.number("max_dark_divergence", self.max_dark_divergence, {0.0, 0.7}, "nat", "the same of the dark ones");
+                 "a window farther than this from every histogram of a search is not looked at");
+    visit.number("found_divergence", self.found_divergence, {0.0, 0.7}, "nat",
+                 "what the circle's inside may differ from the nearest histogram at first sight");
     visit.number("kept_divergence", self.kept_divergence, {0.0, 0.7}, "nat", "the same of a ball that is followed");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
                  "windows of each of the two searches of which the shape is looked at");
     visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
                  "images without the ball after which it is found as at first sight");
-    visit.section("search", self.search, "The two searches over the image");
+    visit.section("search", self.search, "The two searches over the image; their sizes span what the ball can have");
     visit.section("ball", self.ball, "Its shape");
   }
 };
