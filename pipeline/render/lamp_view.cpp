@@ -3,113 +3,279 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace cgsr::render {
 namespace {
 
-RasterParameters raster_of(const ShadeParameters& parameters) {
-  RasterParameters raster;
-  raster.near_m = parameters.near_m;
-  raster.surfaces_most = parameters.surfaces_most;
-  raster.looked_at_most = std::max(raster.looked_at_most, 2 * parameters.surfaces_most);
-  raster.triangles_most = 8 * parameters.surfaces_most;
-  raster.surface_least_cells = 0.5;
-  return raster;
-}
+constexpr std::size_t kFaces = 6;        // +x, -x, +y, -y, +z, -z
+constexpr std::size_t kMoreThanOne = 2;  // entries a cell, in the mean
+constexpr float kWider = 1e-3F;          // cells: what rounding may move an outline by
 
-/// Square, 90 degrees wide and high.
-View face_of(int cells) {
-  View view;
-  view.width = cells;
-  view.height = cells;
-  view.left_px = -0.5;
-  view.top_px = -0.5;
-  view.right_px = cells - 0.5;
-  view.bottom_px = cells - 0.5;
-  view.fx = 0.5 * cells;
-  view.fy = 0.5 * cells;
-  view.cx = 0.5 * cells - 0.5;
-  view.cy = 0.5 * cells - 0.5;
-  return view;
-}
-
-/// Camera axes x, y, z of each face among those of W: index and sign. z looks out of the face, x x y = z.
-struct Axes {
-  int x, y, z;
-  float sign_x, sign_y, sign_z;
-};
-constexpr std::array<Axes, 6> kFaces{{{1, 2, 0, 1, 1, 1},
-                                      {1, 2, 0, -1, 1, -1},
-                                      {2, 0, 1, 1, 1, 1},
-                                      {2, 0, 1, -1, 1, -1},
-                                      {0, 1, 2, 1, 1, 1},
-                                      {0, 1, 2, -1, 1, -1}}};
+/// Across and along each face, as axes of W.
+constexpr std::array<std::array<Eigen::Index, 2>, 3> kAcross{{{1, 2}, {2, 0}, {0, 1}}};
 
 }  // namespace
 
+/// A triangle before the near plane, in the cells of a face.
+struct LampView::Outline {
+  std::array<Eigen::Vector2f, 4> corners;
+  std::size_t count = 0;
+  float du = 0.0F;  ///< of 1/depth, which is linear.
+  float dv = 0.0F;
+  float at_origin = 0.0F;
+  float top = 0.0F;
+  float bottom = 0.0F;
+
+  /// Leftmost and rightmost place on a line across; false: it does not meet it.
+  bool across(float v, float& left, float& right) const {
+    left = std::numeric_limits<float>::max();
+    right = -left;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector2f& a = corners[i];
+      const Eigen::Vector2f& b = corners[(i + 1) % count];
+      if ((a.y() < v) == (b.y() < v)) continue;
+      const float u = a.x() + (b.x() - a.x()) * ((v - a.y()) / (b.y() - a.y()));
+      left = std::min(left, u);
+      right = std::max(right, u);
+    }
+    return left <= right;
+  }
+};
+
 LampView::LampView(const world::Map& map, const ShadeParameters& parameters)
     : map_(map),
-      margin_(static_cast<float>(parameters.margin)),
-      view_(face_of(parameters.lamp_cells)),
-      surfaces_(map, raster_of(parameters)),
-      faces_(kFaces.size(), DepthBuffer(parameters.lamp_cells, parameters.lamp_cells)) {}
+      most_(static_cast<float>(1.0 + parameters.margin)),
+      near_m_(static_cast<float>(parameters.near_m)),
+      cells_(parameters.lamp_cells),
+      seen_(map.triangles.size()) {
+  const std::size_t count = kFaces * static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_);
+  covered_.resize(count);
+  entries_.resize(count * kMoreThanOne);
+}
 
 void LampView::place(const Eigen::Vector3f& p_WL) {
   p_WL_ = p_WL;
-  for (std::size_t i = 0; i < kFaces.size(); ++i) {
-    const Axes& axes = kFaces[i];
-    geometry::Pose X_WF = geometry::Pose::Identity();
-    X_WF.linear().setZero();
-    X_WF.linear()(axes.x, 0) = axes.sign_x;
-    X_WF.linear()(axes.y, 1) = axes.sign_y;
-    X_WF.linear()(axes.z, 2) = axes.sign_z;
-    X_WF.translation() = p_WL.cast<double>();
-    surfaces_.draw(X_WF, view_, faces_[i]);
+  full_ = false;
+  placed_ = p_WL.allFinite();
+  std::fill(covered_.begin(), covered_.end(), 0.0F);
+  std::fill_n(entries_.begin(), covered_.size(), Entry{});
+  entries_used_ = covered_.size();
+  if (!placed_) return;
+  for (std::uint32_t name = 0; name < map_.surfaces.size(); ++name) {
+    const world::Surface& surface = map_.surfaces[name];
+    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) see(surface.first_triangle + t, name);
+  }
+  for (std::size_t face = 0; face < kFaces; ++face) {
+    for (std::uint32_t t = 0; t < map_.triangles.size(); ++t) cover(face, t);
+  }
+  for (std::size_t face = 0; face < kFaces; ++face) {
+    for (std::uint32_t t = 0; t < map_.triangles.size(); ++t) enter(face, t);
   }
 }
 
-LampView::Answer LampView::look_at(const Eigen::Vector3f& p_W, std::uint32_t own) const {
-  const Eigen::Vector3f ray = p_W - p_WL_;
-  const float ax = std::abs(ray.x());
-  const float ay = std::abs(ray.y());
-  const float az = std::abs(ray.z());
-  const std::size_t axis = ax >= ay && ax >= az ? 0 : (ay >= az ? 1 : 2);
-  const float along = ray[static_cast<Eigen::Index>(axis)];
-  if (along == 0.0F) return {};
-  const std::size_t face = 2 * axis + (along < 0.0F ? 1 : 0);
-  const Axes& axes = kFaces[face];
-  const float per_depth = static_cast<float>(view_.fx) / std::abs(along);
-  const float u = axes.sign_x * ray[axes.x] * per_depth + static_cast<float>(view_.cx);
-  const float v = axes.sign_y * ray[axes.y] * per_depth + static_cast<float>(view_.cy);
-  const int x = std::clamp(static_cast<int>(u), 0, view_.width - 2);
-  const int y = std::clamp(static_cast<int>(v), 0, view_.height - 2);
-  const auto around = faces_[face].names(x, y);
-  const auto hides = [&](std::uint32_t triangle) {
-    return triangle != DepthBuffer::kNothing && surfaces_.surface_of(triangle) != own && stands_before(triangle, ray);
-  };
-  if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) {
-    return {hides(around[0]), around[0]};
-  }
-  const bool hidden = hides(around[0]) || (around[1] != around[0] && hides(around[1])) ||
-                      (around[2] != around[0] && hides(around[2])) || (around[3] != around[1] && hides(around[3]));
-  return {hidden, kMixed};
-}
-
-/// Whether the way from the lamp along `ray` meets the triangle before it ends (Moeller and Trumbore), the lamp at the origin.
-bool LampView::stands_before(std::uint32_t triangle, const Eigen::Vector3f& ray) const {
+void LampView::see(std::uint32_t triangle, std::uint32_t surface) {
   const world::Triangle& t = map_.triangles[triangle];
   const Eigen::Vector3f a = map_.vertices[t[0]] - p_WL_;
-  const Eigen::Vector3f e1 = map_.vertices[t[1]] - map_.vertices[t[0]];
-  const Eigen::Vector3f e2 = map_.vertices[t[2]] - map_.vertices[t[0]];
-  const Eigen::Vector3f n = e1.cross(e2);
-  const float det = -ray.dot(n);
-  if (det == 0.0F) return false;
-  const float at = -a.dot(n) / det;
-  if (!(at > 0.0F && at < 1.0F - margin_)) return false;
-  const Eigen::Vector3f q = a.cross(ray);  // barycentric coordinates, times det
-  const float sign = det > 0.0F ? 1.0F : -1.0F;
-  const float b1 = sign * -q.dot(e2);
-  const float b2 = sign * q.dot(e1);
-  return b1 >= 0.0F && b2 >= 0.0F && b1 + b2 <= std::abs(det);
+  const Eigen::Vector3f b = map_.vertices[t[1]] - p_WL_;
+  const Eigen::Vector3f c = map_.vertices[t[2]] - p_WL_;
+  const Eigen::Vector3f n = (b - a).cross(c - a);
+  const float away = a.dot(n);
+  Seen& seen = seen_[triangle];
+  seen.surface = surface;
+  if (!(std::abs(away) > 1e-7F * n.norm())) {  // seen from its edge: hides nothing
+    seen.side.fill(Eigen::Vector3f::Zero());
+    seen.nearness.setZero();
+    return;
+  }
+  // The same two corners give the same numbers in both triangles of an edge, but for the sign: no ray gets through between.
+  const float sign = away > 0.0F ? 1.0F : -1.0F;
+  seen.side = {sign * a.cross(b), sign * b.cross(c), sign * c.cross(a)};
+  seen.nearness = n / away;
+}
+
+/// Cuts a triangle at the near plane of a face and lays it over its cells.
+bool LampView::outline(std::size_t face, std::uint32_t triangle, Outline& out) const {
+  if (seen_[triangle].nearness.isZero(0.0F)) return false;
+  const auto axis = static_cast<Eigen::Index>(face / 2);
+  const auto& across = kAcross[face / 2];
+  const float sign = face % 2 == 0 ? 1.0F : -1.0F;
+  const world::Triangle& t = map_.triangles[triangle];
+  std::array<Eigen::Vector3f, 3> p;  // u, v and depth
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3f q = map_.vertices[t[i]] - p_WL_;
+    p[i] = {q[across[0]], q[across[1]], sign * q[axis]};
+  }
+  const auto beyond = [&](auto&& outside) { return outside(p[0]) && outside(p[1]) && outside(p[2]); };
+  if (beyond([&](const Eigen::Vector3f& q) { return q.z() < near_m_; })) return false;
+  if (beyond([](const Eigen::Vector3f& q) { return q.x() > q.z(); }) ||
+      beyond([](const Eigen::Vector3f& q) { return -q.x() > q.z(); }) ||
+      beyond([](const Eigen::Vector3f& q) { return q.y() > q.z(); }) ||
+      beyond([](const Eigen::Vector3f& q) { return -q.y() > q.z(); })) {
+    return false;
+  }
+  const float half = 0.5F * static_cast<float>(cells_);
+  const auto keep = [&](const Eigen::Vector3f& q) {
+    out.corners[out.count++] = {half + half * q.x() / q.z(), half + half * q.y() / q.z()};
+  };
+  out.count = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3f& a = p[i];
+    const Eigen::Vector3f& b = p[(i + 1) % 3];
+    if (a.z() >= near_m_) keep(a);
+    if ((a.z() >= near_m_) == (b.z() >= near_m_)) continue;
+    Eigen::Vector3f cut = a + (b - a) * ((near_m_ - a.z()) / (b.z() - a.z()));
+    cut.z() = near_m_;
+    keep(cut);
+  }
+  if (out.count < 3) return false;
+  // nearness . ray with ray = depth ((u - half) / half, (v - half) / half, 1) is 1 on the triangle: so it is per depth.
+  const Eigen::Vector3f& nearness = seen_[triangle].nearness;
+  out.du = nearness[across[0]] / half;
+  out.dv = nearness[across[1]] / half;
+  out.at_origin = sign * nearness[axis] - half * (out.du + out.dv);
+  out.top = std::numeric_limits<float>::max();
+  out.bottom = -out.top;
+  for (std::size_t i = 0; i < out.count; ++i) {
+    out.top = std::min(out.top, out.corners[i].y());
+    out.bottom = std::max(out.bottom, out.corners[i].y());
+  }
+  return true;
+}
+
+/// Notes the cells that a triangle covers wholly, and its farthest depth in each: nothing behind that throws a shadow of its own there.
+void LampView::cover(std::size_t face, std::uint32_t triangle) {
+  Outline o;
+  if (!outline(face, triangle, o)) return;
+  const auto limit = static_cast<float>(cells_);
+  const float farthest = 0.5F * (std::abs(o.du) + std::abs(o.dv));
+  const int first = static_cast<int>(std::ceil(std::clamp(o.top, 0.0F, limit)));
+  const int last = static_cast<int>(std::floor(std::clamp(o.bottom, 0.0F, limit)));
+  for (int y = first; y < last; ++y) {
+    float left = 0.0F;
+    float right = 0.0F;
+    float left_below = 0.0F;
+    float right_below = 0.0F;
+    if (!o.across(static_cast<float>(y), left, right)) continue;
+    if (!o.across(static_cast<float>(y + 1), left_below, right_below)) continue;
+    const int begin = static_cast<int>(std::ceil(std::clamp(std::max(left, left_below) + kWider, 0.0F, limit)));
+    const int end = static_cast<int>(std::floor(std::clamp(std::min(right, right_below) - kWider, 0.0F, limit)));
+    float* row = &covered_[(face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) *
+                           static_cast<std::size_t>(cells_)];
+    const float start = o.at_origin + o.dv * (static_cast<float>(y) + 0.5F) + o.du * 0.5F - farthest;
+    for (int x = begin; x < end; ++x) row[x] = std::max(row[x], start + o.du * static_cast<float>(x));
+  }
+}
+
+/// Enters a triangle in every cell that it touches and in which nothing covers it.
+void LampView::enter(std::size_t face, std::uint32_t triangle) {
+  Outline o;
+  if (!outline(face, triangle, o)) return;
+  const auto limit = static_cast<float>(cells_);
+  const float nearest = 0.5F * (std::abs(o.du) + std::abs(o.dv));
+  const int first = static_cast<int>(std::floor(std::clamp(o.top - kWider, 0.0F, limit - 1.0F)));
+  const int last = static_cast<int>(std::floor(std::clamp(o.bottom + kWider, 0.0F, limit - 1.0F)));
+  for (int y = first; y <= last; ++y) {
+    const auto above = static_cast<float>(y);
+    const float below = above + 1.0F;
+    float left = std::numeric_limits<float>::max();
+    float right = -left;
+    float l = 0.0F;
+    float r = 0.0F;
+    if (o.across(above, l, r)) {
+      left = std::min(left, l);
+      right = std::max(right, r);
+    }
+    if (o.across(below, l, r)) {
+      left = std::min(left, l);
+      right = std::max(right, r);
+    }
+    for (std::size_t i = 0; i < o.count; ++i) {
+      if (o.corners[i].y() < above - kWider || o.corners[i].y() > below + kWider) continue;
+      left = std::min(left, o.corners[i].x());
+      right = std::max(right, o.corners[i].x());
+    }
+    if (!(left <= right) || right < -kWider || left > limit + kWider) continue;
+    const int begin = static_cast<int>(std::floor(std::clamp(left - kWider, 0.0F, limit - 1.0F)));
+    const int end = static_cast<int>(std::floor(std::clamp(right + kWider, 0.0F, limit - 1.0F)));
+    const std::size_t row =
+        (face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) * static_cast<std::size_t>(cells_);
+    const float start = o.at_origin + o.dv * (above + 0.5F) + o.du * 0.5F + nearest;
+    for (int x = begin; x <= end; ++x) {
+      const std::size_t cell = row + static_cast<std::size_t>(x);
+      if (start + o.du * static_cast<float>(x) < covered_[cell] * 0.9999F) continue;
+      if (entries_[cell].triangle == kNone) {
+        entries_[cell].triangle = triangle;
+      } else if (entries_used_ < entries_.size()) {
+        entries_[entries_used_] = {triangle, entries_[cell].next};
+        entries_[cell].next = static_cast<std::uint32_t>(entries_used_++);
+      } else {
+        full_ = true;
+      }
+    }
+  }
+}
+
+std::uint32_t LampView::cell_of(const Eigen::Vector3f& ray) const {
+  const float rx = ray.x();
+  const float ry = ray.y();
+  const float rz = ray.z();
+  const float ax = std::abs(rx);
+  const float ay = std::abs(ry);
+  const float az = std::abs(rz);
+  // As kAcross has it.
+  float along = rz;
+  float u = rx;
+  float v = ry;
+  int face = 4;
+  if (ax >= ay && ax >= az) {
+    along = rx;
+    u = ry;
+    v = rz;
+    face = 0;
+  } else if (ay >= az) {
+    along = ry;
+    u = rz;
+    v = rx;
+    face = 2;
+  }
+  face += along < 0.0F ? 1 : 0;
+  const float half = 0.5F * static_cast<float>(cells_);
+  const float per_depth = half / std::max(std::abs(along), 1e-20F);
+  const auto most = static_cast<float>(cells_ - 1);
+  const int x = static_cast<int>(std::min(std::max(half + u * per_depth, 0.0F), most));
+  const int y = static_cast<int>(std::min(std::max(half + v * per_depth, 0.0F), most));
+  return static_cast<std::uint32_t>((face * cells_ + y) * cells_ + x);
+}
+
+LampView::Answer LampView::look_along(const Eigen::Vector3f& way, float times, std::uint32_t own) const {
+  if (!placed_) return {};
+  const Entry* const entries = entries_.data();
+  const float most = most_ * times;
+  const std::uint32_t first = cell_of(way);
+  Answer answer;
+  if (entries[first].next == kNone) answer.seen = entries[first].triangle;
+  for (std::uint32_t i = first; i != kNone; i = entries[i].next) {
+    const std::uint32_t triangle = entries[i].triangle;
+    if (triangle == kNone) return answer;
+    const Seen& seen = seen_[triangle];
+    if (seen.surface == own || !(seen.meets(way) > most)) continue;
+    answer.hidden = true;
+    return answer;
+  }
+  return answer;
+}
+
+float LampView::reach(const Eigen::Vector3f& p_W) const {
+  if (!placed_) return 0.0F;
+  const Eigen::Vector3f ray = p_W - p_WL_;
+  float nearest = 0.0F;
+  for (std::uint32_t i = cell_of(ray); i != kNone; i = entries_[i].next) {
+    const std::uint32_t triangle = entries_[i].triangle;
+    if (triangle == kNone) break;
+    nearest = std::max(nearest, seen_[triangle].meets(ray));
+  }
+  return nearest > 0.0F ? 1.0F / nearest : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace cgsr::render

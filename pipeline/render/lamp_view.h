@@ -1,41 +1,82 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "pipeline/render/shade_parameters.h"
-#include "pipeline/render/surface_raster.h"
+#include "pipeline/world/map.h"
 
 namespace cgsr::render {
 
-/// What a lamp's centre sees: six depth buffers around it, which say which triangles may stand between it and a point; whether one does is
-/// then decided exactly. Thin things that fall between the buffers' cells are missed.
+/// What a lamp's centre sees: six square faces around it, whose cells each name every triangle that may throw a shadow there, however thin. Whether
+/// one stands between the lamp and a point is decided by the triangle itself, so that the size of the cells is a matter of cost alone.
 class LampView {
  public:
   /// \param map  outlives it.
   LampView(const world::Map& map, const ShadeParameters& parameters);
 
-  /// Draws the map as the lamp sees it. Allocates nothing.
+  /// Sorts the map's triangles into the cells. Allocates nothing.
   void place(const Eigen::Vector3f& p_WL);
 
+  static constexpr std::uint32_t kSeveral = 0xFFFFFFFEU;
   struct Answer {
     bool hidden = false;
-    std::uint32_t seen = kMixed;  ///< the triangle that the lamp sees all around the way to the point.
+    std::uint32_t seen = kSeveral;  ///< the only triangle in the point's cell.
   };
-  static constexpr std::uint32_t kMixed = 0xFFFFFFFEU;  ///< more than one.
 
-  /// \param own  the surface that the point lies on, which does not hide it; kNone: none.
-  [[nodiscard]] Answer look_at(const Eigen::Vector3f& p_W, std::uint32_t own) const;
+  /// \param own  the surface that the point lies on, which does not hide it; world::kNone: none.
+  [[nodiscard]] Answer look_at(const Eigen::Vector3f& p_W, std::uint32_t own) const {
+    return look_along(p_W - p_WL_, 1.0F, own);
+  }
+  /// The same of a point whose way from the lamp is known, `times` as long as it is (> 0).
+  [[nodiscard]] Answer look_along(const Eigen::Vector3f& way, float times, std::uint32_t own) const;
+
+  /// How many times as far as a point the lamp's ray through it goes until something stops it. \return infinity: nothing does.
+  [[nodiscard]] float reach(const Eigen::Vector3f& p_W) const;
+
+  /// Whether there were more triangles than cells could hold: some shadows may be missing.
+  [[nodiscard]] bool full() const { return full_; }
 
  private:
-  [[nodiscard]] bool stands_before(std::uint32_t triangle, const Eigen::Vector3f& ray) const;
+  /// A triangle with the lamp at the origin: a ray from there meets it where side[i] . ray >= 0 for all i and nearness . ray > 0; it is then
+  /// nearness . ray times as near as the ray is long.
+  struct Seen {
+    std::array<Eigen::Vector3f, 3> side;
+    Eigen::Vector3f nearness;
+    std::uint32_t surface;
+
+    [[nodiscard]] float meets(const Eigen::Vector3f& ray) const {
+      if (side[0].dot(ray) < 0.0F || side[1].dot(ray) < 0.0F || side[2].dot(ray) < 0.0F) return 0.0F;
+      return nearness.dot(ray);
+    }
+  };
+  struct Entry {
+    std::uint32_t triangle = kNone;
+    std::uint32_t next = kNone;  ///< entry of the same cell.
+  };
+  struct Outline;
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  [[nodiscard]] std::uint32_t cell_of(const Eigen::Vector3f& ray) const;
+  void see(std::uint32_t triangle, std::uint32_t surface);
+  [[nodiscard]] bool outline(std::size_t face, std::uint32_t triangle, Outline& out) const;
+  void cover(std::size_t face, std::uint32_t triangle);
+  void enter(std::size_t face, std::uint32_t triangle);
 
   const world::Map& map_;
-  float margin_;
-  View view_;
-  SurfaceRaster surfaces_;
-  std::vector<DepthBuffer> faces_;  ///< +x, -x, +y, -y, +z, -z.
+  float most_;  ///< nearness up to which a point counts as being on a surface, not behind it.
+  float near_m_;
+  int cells_;
   Eigen::Vector3f p_WL_ = Eigen::Vector3f::Zero();
+  std::vector<Seen> seen_;  ///< [triangle]
+  std::vector<float>
+      covered_;  ///< [cell] of the six faces: 1/depth of the nearest triangle that covers all of it; 0: none does.
+  std::vector<Entry> entries_;  ///< the first of each cell, then those that follow.
+  std::size_t entries_used_ = 0;
+  bool placed_ = false;
+  bool full_ = false;
 };
 
 }  // namespace cgsr::render

@@ -15,7 +15,7 @@ struct ShadeParameters {
   double lift = 1e-3;
   int surfaces_most = 4000;
   int edges_most = 4000;
-  double sigmas = 2.5;
+  double sigmas = 2.0;
   double map_sigma_m = 0.005;
   int widest_cells = 7;
 

@@ -80,10 +80,12 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
   axes_ = {R_WC.col(0), R_WC.col(1), R_WC.col(2), X_WC.translation().cast<float>(),
            static_cast<float>(std::max(camera.fx_px * parameters_.width / camera.width_px,
                                        camera.fy_px * parameters_.height / camera.height_px))};
+  from_lamp_ = axes_.p_WC - p_WL.cast<float>();
   view_ = &views_.of(camera);
   surfaces_.draw(X_WC, *view_, buffer_);
   mark_sides(p_WL.cast<float>());
-  shade_surfaces(X_WC);
+  shade_surfaces();
+  write_masks();
   if (widen_cells > 0) {
     growth_.grow_square(masks_.surface_shaded.data(), widen_cells);
     growth_.grow_square(masks_.possibly_shaded.data(), widen_cells);
@@ -131,37 +133,85 @@ void ShadowVolumes::take_lamp(const Eigen::Vector3f& p_WL) {
       continue;
     }
     if (silhouettes_.size() == silhouettes_.capacity()) return;
-    silhouettes_.push_back(name);
+    take_edge(edge, p_WL);
   }
+}
+
+/// Tries places along an edge: what the lamp does not see of it lies in shade already and bounds nothing.
+void ShadowVolumes::take_edge(const world::Edge& edge, const Eigen::Vector3f& p_WL) {
+  constexpr float kStep_m = 0.04F;
+  constexpr float kMostSteps = 48.0F;
+  constexpr float kSpare = 1.02F;
+  const Eigen::Vector3f& a = map_.vertices[edge.vertices[0]];
+  const Eigen::Vector3f& b = map_.vertices[edge.vertices[1]];
+  const Eigen::Vector3f way = b - a;
+  const float length_m = way.norm();
+  if (length_m < 1e-6F) return;
+  const auto steps = static_cast<int>(std::clamp(length_m / kStep_m, 4.0F, kMostSteps));
+  const float step = 1.0F / static_cast<float>(steps);
+  int first = -1;  // of the stretch that is being seen
+  int last = -1;
+  float reach = 0.0F;
+  const auto end_stretch = [&] {
+    if (first < 0 || silhouettes_.size() == silhouettes_.capacity()) return;
+    const float from = std::max(static_cast<float>(first - 1) * step, 0.0F);
+    const float to = std::min(static_cast<float>(last + 2) * step, 1.0F);
+    silhouettes_.push_back({a + from * way, a + to * way, kSpare * reach});
+    first = -1;
+    reach = 0.0F;
+  };
+  for (int i = 0; i < steps; ++i) {
+    const float here = reach_beyond(a + (static_cast<float>(i) + 0.5F) * step * way, way / length_m, p_WL);
+    if (here > 1.0F) {
+      if (first < 0) first = i;
+      last = i;
+      reach = std::max(reach, here);
+    } else if (i > last + 2) {
+      end_stretch();
+    }
+  }
+  end_stretch();
+}
+
+/// How many times as far as a place of an edge the light goes that just passes it. \return not above 1: none does, or both sides of the edge are
+/// stopped there.
+float ShadowVolumes::reach_beyond(const Eigen::Vector3f& p_W, const Eigen::Vector3f& along,
+                                  const Eigen::Vector3f& p_WL) const {
+  constexpr float kBeside = 1e-3F;  // of the distance
+  constexpr float kBeyond = 1.0005F;
+  const Eigen::Vector3f beside = kBeside * (p_W - p_WL).cross(along);
+  const float reach = std::max(lamp_.reach(p_W + beside), lamp_.reach(p_W - beside));
+  if (reach < kBeyond) return 0.0F;
+  return std::min(reach, leaves_map_after(p_W, p_WL));
+}
+
+/// How far the lamp's ray through a point goes until it is out of the map's box, in units of the way to the point.
+float ShadowVolumes::leaves_map_after(const Eigen::Vector3f& p_W, const Eigen::Vector3f& p_WL) const {
+  float after = 1e4F;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const float way = p_W[i] - p_WL[i];
+    if (std::abs(way) < 1e-6F) continue;
+    const float border = way > 0.0F ? box_.max()[i] : box_.min()[i];
+    after = std::min(after, (border - p_WL[i]) / way);
+  }
+  return std::max(1.2F * after, 1.0F);
 }
 
 void ShadowVolumes::mark_sides(const Eigen::Vector3f& p_WL) {
   std::fill(sides_.begin(), sides_.end(), std::uint8_t{0});
-  for (const std::uint32_t name : silhouettes_) draw_side(map_.edges[name], p_WL);
+  for (const Side& side : silhouettes_) draw_side(side, p_WL);
 }
 
-/// The side of a volume: from the edge away from the lamp, to where it has left the map.
-void ShadowVolumes::draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL) {
-  const Eigen::Vector3f& a = map_.vertices[edge.vertices[0]];
-  const Eigen::Vector3f& b = map_.vertices[edge.vertices[1]];
-  const Eigen::Vector3f n = (a - p_WL).cross(b - p_WL);
+/// The side of a volume: from the edge away from the lamp, to where its shade has fallen on something.
+void ShadowVolumes::draw_side(const Side& side, const Eigen::Vector3f& p_WL) {
+  const Eigen::Vector3f to_a = side.a - p_WL;
+  const Eigen::Vector3f to_b = side.b - p_WL;
+  const Eigen::Vector3f n = to_a.cross(to_b);
   const float size = n.norm();
   if (size < 1e-9F) return;
   DepthPlane plane;
   if (!surfaces_.plane_in_view(n / size, n.dot(p_WL) / size, plane)) return;
-  // How far the lamp's ray through each end goes until it is out of the map's box, in units of the way to the end.
-  const auto leaves_after = [&](const Eigen::Vector3f& end) {
-    float after = 1e4F;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-      const float way = end[i] - p_WL[i];
-      if (std::abs(way) < 1e-6F) continue;
-      const float border = way > 0.0F ? box_.max()[i] : box_.min()[i];
-      after = std::min(after, (border - p_WL[i]) / way);
-    }
-    return std::max(after, 1.0F);
-  };
-  const float reach = 1.2F * std::max(leaves_after(a), leaves_after(b));
-  draw_part({a, b, b - p_WL, a - p_WL}, plane, 1.0F, reach);
+  draw_part({side.a, side.b, to_b, to_a}, plane, 1.0F, side.reach);
 }
 
 /// A side between two multiples of the way to the edge, in as many parts as its uncertainty differs.
@@ -205,20 +255,14 @@ float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const 
   return static_cast<float>(std::clamp(cells, 0.0, static_cast<double>(parameters_.widest_cells)));
 }
 
-struct ShadowVolumes::Places {
-  Eigen::Matrix3f R_WC;
-  Eigen::Vector3f p_WC;
-};
-
 /// Every second ray of every second row is followed; what lies between rays that end alike is taken to end alike when nothing else is seen
-/// there. So a shadow narrower than two cells may be lost, a narrow thing is not.
-void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
-  const Places places{X_WC.linear().cast<float>(), X_WC.translation().cast<float>()};
+/// there, by the camera or by the lamp. So a shadow narrower than two cells may be lost, a narrow thing is not.
+void ShadowVolumes::shade_surfaces() {
   const int width = masks_.width;
   const int height = masks_.height;
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
   for (int y = 0; y < height; y += 2) {
-    for (int x = 0; x < width; x += 2) follow(rays_[at(x, y)], places, seen_at(rays_[at(x, y)]), ends_[at(x, y)]);
+    for (int x = 0; x < width; x += 2) follow(rays_[at(x, y)], seen_at(rays_[at(x, y)]), ends_[at(x, y)]);
   }
   const auto between = [&](std::size_t cell, const End& a, const End& b) {
     const Ray& ray = rays_[cell];
@@ -226,22 +270,22 @@ void ShadowVolumes::shade_surfaces(const geometry::Pose& X_WC) {
     if (a.like(b) && a.triangle == around) {
       ends_[cell] = a;
     } else {
-      follow(ray, places, around == LampView::kMixed ? seen_at(ray) : around, ends_[cell]);
+      follow(ray, around == LampView::kSeveral ? seen_at(ray) : around, ends_[cell]);
     }
   };
   for (int y = 0; y < height; y += 2) {
-    for (int x = 1; x < width; x += 2)
+    for (int x = 1; x < width; x += 2) {
       between(at(x, y), ends_[at(x - 1, y)], ends_[at(std::min(x + 1, width - 1) & ~1, y)]);
+    }
   }
   for (int y = 1; y < height; y += 2) {
     const int below = std::min(y + 1, height - 1) & ~1;
     for (int x = 0; x < width; ++x) between(at(x, y), ends_[at(x, y - 1)], ends_[at(x, below)]);
   }
-  write_masks(places.p_WC);
 }
 
-void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const {
-  end = {triangle, LampView::kMixed, 0};
+void ShadowVolumes::follow(const Ray& ray, std::uint32_t triangle, End& end) const {
+  end = {triangle, LampView::kSeveral, 0};
   if (triangle == DepthBuffer::kNothing) return;
   const std::uint32_t own = surfaces_.surface_of(triangle);
   // A sheet between lamp and camera shades itself: what is seen is its other side.
@@ -250,15 +294,16 @@ void ShadowVolumes::follow(const Ray& ray, const Places& places, std::uint32_t t
     end.seen = triangle;
     return;
   }
-  const float depth = 1.0F / surfaces_.plane_of(own).at(ray.u, ray.v);
-  const Eigen::Vector3f p_W = places.p_WC + places.R_WC * Eigen::Vector3f(ray.x * depth, ray.y * depth, depth);
-  const LampView::Answer answer = lamp_.look_at(p_W, own);
+  // From the lamp to where the ray ends, times 1/Z: no division is needed.
+  const float w = surfaces_.plane_of(own).at(ray.u, ray.v);
+  const Eigen::Vector3f way = (w * from_lamp_ + axes_.ahead) + (ray.x * axes_.right + ray.y * axes_.down);
+  const LampView::Answer answer = lamp_.look_along(way, w, own);
   end.shaded = answer.hidden ? 255 : 0;
   end.seen = answer.seen;
 }
 
-void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
-  const std::uint8_t in_shade = lamp_.look_at(p_WC, world::kNone).hidden ? 1 : 0;
+void ShadowVolumes::write_masks() {
+  const std::uint8_t in_shade = lamp_.look_at(axes_.p_WC, world::kNone).hidden ? 1 : 0;
   std::uint8_t* const surface =
       masks_.surface_shaded.data();  // bytes may point anywhere: spare what is behind the vectors a look
   std::uint8_t* const possibly = masks_.possibly_shaded.data();
@@ -271,7 +316,7 @@ void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
     const Eigen::Vector3f ahead = axes_.p_WC + 3.0F * axes_.ahead;
     by_surface = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(moved_cells(ahead, 1.0F))));
   }
-  const std::size_t count = ends_.size();
+  const std::size_t count = rays_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t some = ends[i].triangle == DepthBuffer::kNothing ? 0 : 255;
     surface[i] = ends[i].shaded;
@@ -282,11 +327,11 @@ void ShadowVolumes::write_masks(const Eigen::Vector3f& p_WC) {
   if (uncertain_) growth_.grow(possibly);
 }
 
-/// The triangle in all four cells around a ray; kMixed: there are several.
+/// The triangle in all four cells around a ray; kSeveral: there is not one.
 std::uint32_t ShadowVolumes::seen_around(const Ray& ray) const {
   const auto around = buffer_.names(ray.around);
   const bool one = ((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0;
-  return one ? around[0] : LampView::kMixed;
+  return one ? around[0] : LampView::kSeveral;
 }
 
 /// The first triangle along a ray: the nearest of those around that cover it.

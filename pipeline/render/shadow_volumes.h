@@ -30,7 +30,7 @@ struct ShadeErrors {
 /// Shaded regions of the map (5.2) by shadow volumes, clipped by the map's depth.
 ///
 /// The first mask asks for each cell's own ray, through the lens, whether the lamp sees where it ends (LampView). The second adds the sides of
-/// the volumes: behind each silhouette edge, away from the lamp, the half-plane that bounds what the edge's surface shades. Where a side stands
+/// the volumes: behind each silhouette edge that the lamp sees, away from it, what bounds the shade until it falls on something. Where a side stands
 /// before the map's first surface, the ray passes through shade; it does so without a side only when it begins or ends there. So nothing needs
 /// to be counted, volumes need no caps, and a camera inside of one is no special case.
 ///
@@ -49,7 +49,7 @@ class ShadowVolumes {
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          const ShadeErrors& errors);
 
-  /// Edges that bound volumes, for the last lamp.
+  /// Stretches of edges that bound volumes, for the last lamp.
   [[nodiscard]] std::size_t silhouettes() const { return silhouettes_.size(); }
 
  private:
@@ -65,14 +65,19 @@ class ShadowVolumes {
   /// Where a ray ends.
   struct End {
     std::uint32_t triangle = DepthBuffer::kNothing;
-    std::uint32_t seen = LampView::kMixed;  ///< by the lamp, around it.
+    std::uint32_t seen = LampView::kSeveral;  ///< by the lamp, around it.
     std::uint8_t shaded = 0;
 
     [[nodiscard]] bool like(const End& other) const {
-      return triangle == other.triangle && seen == other.seen && seen != LampView::kMixed && shaded == other.shaded;
+      return triangle == other.triangle && seen == other.seen && seen != LampView::kSeveral && shaded == other.shaded;
     }
   };
-  struct Places;
+  /// A stretch of a silhouette that the lamp sees, and how many times as far as it its shade goes.
+  struct Side {
+    Eigen::Vector3f a;
+    Eigen::Vector3f b;
+    float reach;
+  };
   /// The image's axes and the view's, in W.
   struct Axes {
     Eigen::Vector3f right = Eigen::Vector3f::UnitX();
@@ -87,12 +92,16 @@ class ShadowVolumes {
   void take_camera(const geometry::Camera& camera);
   void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
-  void draw_side(const world::Edge& edge, const Eigen::Vector3f& p_WL);
+  void take_edge(const world::Edge& edge, const Eigen::Vector3f& p_WL);
+  [[nodiscard]] float reach_beyond(const Eigen::Vector3f& p_W, const Eigen::Vector3f& along,
+                                   const Eigen::Vector3f& p_WL) const;
+  [[nodiscard]] float leaves_map_after(const Eigen::Vector3f& p_W, const Eigen::Vector3f& p_WL) const;
+  void draw_side(const Side& side, const Eigen::Vector3f& p_WL);
   void draw_part(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float from, float to);
   [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
-  void shade_surfaces(const geometry::Pose& X_WC);
-  void follow(const Ray& ray, const Places& places, std::uint32_t triangle, End& end) const;
-  void write_masks(const Eigen::Vector3f& p_WC);
+  void write_masks();
+  void shade_surfaces();
+  void follow(const Ray& ray, std::uint32_t triangle, End& end) const;
   [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
 
@@ -107,7 +116,7 @@ class ShadowVolumes {
   std::vector<Ray> rays_;
   std::vector<End> ends_;
   std::vector<std::uint8_t> lamp_in_front_;  ///< [surface]: on the side that its normal points to.
-  std::vector<std::uint32_t> silhouettes_;
+  std::vector<Side> silhouettes_;
   std::vector<std::uint8_t>
       sides_;  ///< of the raster: a volume's side stands before the surface; the bit says how uncertain its place is.
   MaskGrowth growth_;
@@ -120,6 +129,7 @@ class ShadowVolumes {
   bool uncertain_ = false;
   ShadeErrors errors_;
   Axes axes_;
+  Eigen::Vector3f from_lamp_ = Eigen::Vector3f::Zero();  ///< to the camera.
 };
 
 }  // namespace cgsr::render

@@ -31,6 +31,8 @@ std::span<const Experiment> experiments() {
       Experiment{"lamp-cases", "Lamps off, two, behind, flickering, moving; strengths and angles (5.4.1)", true,
                  lamp_cases},
       Experiment{"lamp-drives", "A lamp's place and height while the robot drives", true, lamp_drives},
+      Experiment{"section-5.4.2", "Shaded regions beside the ray tracer's, and their cost (5.4.2)", true,
+                 section_5_4_2},
       Experiment{"real-localization", "Chapter 4 on a cube, a desk and ViSP's castle", true, real_localization},
       Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
   };

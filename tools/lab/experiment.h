@@ -56,5 +56,6 @@ Result<Report> section_5_4_3(const Setting& setting);
 Result<Report> shaded_ball(const Setting& setting);
 Result<Report> lamp_cases(const Setting& setting);
 Result<Report> lamp_drives(const Setting& setting);
+Result<Report> section_5_4_2(const Setting& setting);
 
 }  // namespace cgsr::lab

@@ -14,6 +14,7 @@
 #include "src/config/load.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/experiment.h"
+#include "tools/lab/shaded_views.h"
 #include "tools/lab/trackers.h"
 
 namespace cgsr::lab {
@@ -215,12 +216,21 @@ int main(int argc, char** argv) {
   ball_command->add_option("--focal", ball_options.focal_px, "of the camera, in pixels")->capture_default_str();
   ball_command->add_flag("--without-mask", ball_options.without_mask, "search dark histograms everywhere");
   ball_command->add_option("--config", ball_options.config, "a robot's file, for its section [color]");
+  std::uint64_t shade_seed = 1;
+  int shade_views = 10;
+  CLI::App* shade_command = app.add_subcommand("shade", "look for shaded regions in the home, for tools/count");
+  shade_command->add_option("--seed", shade_seed);
+  shade_command->add_option("--views", shade_views)->check(CLI::Range(1, 10000));
   CLI11_PARSE(app, argc, argv);
 
   try {
     if (*follow_command) return follow_film(film_options);
     if (*ball_command) return follow_ball_film(ball_options);
     if (*scenes_command) return save_scenes(film_options);
+    if (*shade_command) {
+      const auto looked = look_at_shade(shade_seed, shade_views);
+      return looked ? 0 : complain(looked.error());
+    }
     return reproduce(reproduce_options);
   } catch (const std::exception& error) {  // OpenCV's, of a defective picture
     return complain({error.what()});

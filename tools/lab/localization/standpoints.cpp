@@ -122,6 +122,7 @@ Area area_of(std::string_view world) {
   if (world == "planar") return {-1.0, 8.0, -4.0, 4.0};
   if (world == "occlusion") return {0.4, 5.4, -2.1, 2.1};
   if (world == "corridor") return {-1.0, 13.0, -0.9, 0.9};
+  if (world == "people") return {0.4, 7.6, -3.1, 3.1};
   return {0.4, 8.6, 0.4, 6.1};  // home
 }
 
