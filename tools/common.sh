@@ -36,7 +36,9 @@ build() {
   start=$SECONDS
   if [ ! -f "$root/build/$preset/build.ninja" ]; then
     say "configuring build/$preset"
-    cmake -S "$root" --preset "$preset" >"$root/build-$preset.log" 2>&1 ||
+    local once=()
+    [ "${CI:-}" != true ] || once=(-DCGSR_PRECOMPILE=ON)
+    cmake -S "$root" --preset "$preset" "${once[@]}" >"$root/build-$preset.log" 2>&1 ||
       { cat "$root/build-$preset.log" >&2; rm -f "$root/build-$preset.log"; die "cmake failed"; }
     rm -f "$root/build-$preset.log"
   fi
