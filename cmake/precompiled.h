@@ -22,9 +22,9 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <fmt/format.h>
 #include <opencv2/core.hpp>
 #include <tl/expected.hpp>
