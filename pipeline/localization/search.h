@@ -63,23 +63,23 @@ class Search {
   LocalizerParameters parameters_;
   Alternation* alternation_;
   DirectionField field_;
-  Stage stage_ = Stage::kIdle;
   geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
   PriorShape shape_;
-  std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
+  geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
+  geometry::Pose X_WC_began_ = geometry::Pose::Identity();
+  Estimate best_;
+  std::vector<Candidate> finalists_;  ///< best first.
+  std::vector<Estimate> estimates_;   ///< distinct, best first.
   double cells_ = 1.0;
+  std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
   std::uint32_t start_count_ = 0;
   std::uint32_t next_start_ = 0;
   std::uint32_t next_finalist_ = 0;
   std::uint32_t next_neighbour_ = 0;
   int walk_ = 0;
-  bool improved_ = false;
-  geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
-  geometry::Pose X_WC_began_ = geometry::Pose::Identity();
-  std::vector<Candidate> finalists_;  ///< best first.
-  std::vector<Estimate> estimates_;   ///< distinct, best first.
-  Estimate best_;
   float lead_ = 0.0F;
+  Stage stage_ = Stage::kIdle;
+  bool improved_ = false;
 };
 
 }  // namespace cgsr::localization
