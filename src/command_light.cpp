@@ -44,8 +44,9 @@ void add_light_command(CLI::App& app, int& exit_code) {
       ->add_option("--config", options->config, "board, probes and lamp: a file as config/illumination/lamp-robot.toml")
       ->required();
   command->add_option("--camera", options->camera, "YAML of ROS's camera_calibration")->required();
-  command->add_option("--mount", options->mount,
-                      "robot.toml of cgsr calibrate mount or cgsr sim export, instead of the configuration's [mount]");
+  command->add_option(
+      "--mount", options->mount,
+      "robot.toml of cgsr calibrate or cgsr sim export, instead of the configuration's [mount] and board");
   command->add_option("--input", options->input, "video, image folder or image")->required();
   command->add_option("--pose", options->pose,
                       "CSV with the robot's pose for each image: lamps are kept in the world's frame as well");

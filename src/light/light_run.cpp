@@ -41,6 +41,25 @@ geometry::Pose MountParameters::X_RC() const {
   return X;
 }
 
+Result<void> take_board(const std::string& robot_file, illumination::BoardParameters& board) {
+  const auto stated = read_board(robot_file);
+  if (!stated) return tl::unexpected(stated.error());
+  if (!*stated) return {};
+  const CalibratedBoard& calibrated = **stated;
+  board.position_m = calibrated.position_m;
+  board.turn_deg = calibrated.turn_deg;
+  board.width_m = calibrated.width_m;
+  board.depth_m = calibrated.depth_m;
+  board.probes = static_cast<int>(calibrated.probe.size());
+  for (std::size_t i = 0; i < calibrated.probe.size(); ++i) {
+    illumination::ProbeParameters& probe = i == 0 ? board.left : board.right;
+    probe.apex_m = calibrated.probe[i].apex_m;
+    probe.foot_m = calibrated.probe[i].foot_m;
+    probe.base_radius_m = calibrated.probe[i].base_radius_m;
+  }
+  return {};
+}
+
 LightRun::LightRun(const LightOptions& options, const LightConfig& config, const illumination::Board& board,
                    ImageInput input, std::vector<PoseRow> poses)
     : options_(options),
@@ -61,6 +80,8 @@ Result<LightRun> LightRun::open(const LightOptions& options) {
     const auto mount = read_mount(options.mount);
     if (!mount) return tl::unexpected(mount.error());
     X_RC = *mount;
+    if (const auto taken = take_board(options.mount, config->probes.board); !taken)
+      return tl::unexpected(taken.error());
   }
   const auto board = illumination::make_board(config->probes.board, X_RC, *camera);
   if (!board) return fail(fmt::format("{}: {}", options.config, board.error().message));

@@ -51,6 +51,9 @@ struct LightConfig {
   }
 };
 
+/// Takes the probe board that a robot.toml states, where it states one.
+Result<void> take_board(const std::string& robot_file, illumination::BoardParameters& board);
+
 /// The work of `cgsr light`, an image at a time.
 class LightRun {
  public:
