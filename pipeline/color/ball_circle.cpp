@@ -26,6 +26,8 @@ constexpr double kSlack = 0.15;  // a circle may be so much larger or smaller th
 constexpr int kAreaPoints = 64;
 constexpr int kRingPoints = 48;
 constexpr double kLeastInImage = 0.5;  // of the circumference
+constexpr double kEnough =
+    0.85;  // of it in the image: of a circle that shows less, what lies outside speaks against it
 constexpr double kGoldenTurn = 2.399963229728653;
 constexpr double kWholeTurn = 6.283185307179586;
 
@@ -313,7 +315,7 @@ double agreement_of(const ImageView& image, const Edges& edges, const Circle& ci
         squared(color_at(image, p.x - h * dy, p.y + h * dx), color_at(image, p.x + h * dy, p.y - h * dx));
     if (out > kAlong * (out + along)) ++count;
   }
-  return count / static_cast<double>(edges.in_image);
+  return count / std::max<double>(edges.in_image, kEnough * kRays);
 }
 
 double share_inside(const BallPixels& pixels, const Circle& circle) {
