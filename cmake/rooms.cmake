@@ -6,12 +6,11 @@ function(cgsr_library name)
   add_library(cgsr_${name} STATIC ${ARG_UNPARSED_ARGUMENTS})
   target_include_directories(cgsr_${name} PUBLIC ${CMAKE_SOURCE_DIR})
   target_link_libraries(cgsr_${name} PUBLIC tl::expected fmt::fmt ${ARG_DEPENDS})
-  cgsr_reuse_precompiled(cgsr_${name} cgsr_precompiled)
 endfunction()
 
 # cgsr_kernels(sources…): loops over arrays that the compiler may vectorise in the release; everything else stays at -O2.
 function(cgsr_kernels)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>")
 endfunction()
 
 # cgsr_test(NAME sources… DEPENDS targets… [LABEL …]): one test program per folder, each TEST() a ctest of its own. LABEL: unit (default), sim,
@@ -26,7 +25,6 @@ function(cgsr_test name)
   endif()
   add_executable(test_${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
-  cgsr_reuse_precompiled(test_${name} cgsr_precompiled_test)
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}: DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120
                        PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
 endfunction()

@@ -22,8 +22,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 # Beside the analyzer, the dearest checks by --enable-check-profile that the compilers' warnings half make up for.
 QUICK = ("-clang-analyzer-*,-bugprone-reserved-identifier,-bugprone-stringview-nullptr,-bugprone-suspicious-string-compare,"
          "-bugprone-multiple-statement-macro,-bugprone-unused-return-value,-misc-unused-using-decls")
-COMMANDS = ROOT / "build" / "tidy-commands"
-PRECOMPILED = re.compile(r" -Winvalid-pch| -include \S+/cmake_pch\.hxx")  # g++'s, which clang cannot read
 INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
@@ -46,7 +44,7 @@ def fingerprint(entry):
 
 
 def tidy(entry, checks):
-    run = subprocess.run(["clang-tidy-14", "--quiet", *checks, "-p", COMMANDS, entry["file"]],
+    run = subprocess.run(["clang-tidy-14", "--quiet", *checks, "-p", ROOT / "build" / "release", entry["file"]],
                          capture_output=True, text=True)
     return entry, run.returncode, run.stdout
 
@@ -57,10 +55,6 @@ def main():
     checks = [f"--checks={QUICK}"] if quick else []
     memory_file = ROOT / "build" / ("tidy-quick.json" if quick else "tidy.json")
     commands = json.loads((ROOT / "build" / "release" / "compile_commands.json").read_text())
-    for entry in commands:
-        entry["command"] = PRECOMPILED.sub("", entry["command"])
-    COMMANDS.mkdir(exist_ok=True)
-    (COMMANDS / "compile_commands.json").write_text(json.dumps(commands))
     memory = json.loads(memory_file.read_text()) if memory_file.exists() else {}
     todo = []
     seen = set()

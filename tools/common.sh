@@ -36,14 +36,14 @@ build() {
   start=$SECONDS
   if [ ! -f "$root/build/$preset/build.ninja" ]; then
     say "configuring build/$preset"
-    local once=()
-    [ "${CI:-}" != true ] || once=(-DCGSR_PRECOMPILE=ON)
-    cmake -S "$root" --preset "$preset" "${once[@]}" >"$root/build-$preset.log" 2>&1 ||
+    cmake -S "$root" --preset "$preset" >"$root/build-$preset.log" 2>&1 ||
       { cat "$root/build-$preset.log" >&2; rm -f "$root/build-$preset.log"; die "cmake failed"; }
     rm -f "$root/build-$preset.log"
   fi
   say "building $preset${1:+: $*}"
-  cmake --build "$root/build/$preset" ${1:+--target "$@"} | tail -n 1 >&2
-  [ "${PIPESTATUS[0]}" -eq 0 ] || { cmake --build "$root/build/$preset" ${1:+--target "$@"} >&2; die "the build failed"; }
+  # Quiet while it goes well; what failed is built once more to be read.
+  if ! cmake --build "$root/build/$preset" ${1:+--target "$@"} | tail -n 1 >&2; then
+    cmake --build "$root/build/$preset" ${1:+--target "$@"} >&2 || die "the build failed"
+  fi
   say "built $preset in $((SECONDS - start)) s"
 }
