@@ -1,3 +1,4 @@
+#include <array>
 #include <cctype>
 #include <random>
 #include <regex>
@@ -129,6 +130,11 @@ class Draw {
   }
   void number(std::string_view, double& value, Range<double> range, std::string_view, std::string_view) {
     value = std::uniform_real_distribution<double>(range.minimum, range.maximum)(random_);
+  }
+  template <std::size_t kCount>
+  void numbers(std::string_view name, std::array<double, kCount>& values, Range<double> range, std::string_view unit,
+               std::string_view description) {
+    for (double& value : values) number(name, value, range, unit, description);
   }
   void flag(std::string_view, bool& value, std::string_view) { value = below(random_, 2) == 1; }
   void text(std::string_view, std::string& value, std::string_view) {
