@@ -11,7 +11,7 @@
 namespace cgsr::color {
 namespace {
 
-constexpr double kCore = 0.8;         // of the radius: at the rim the background shines in
+constexpr double kCore = 0.8;          // of the radius: at the rim the background shines in
 constexpr double kLeastShare = 0.012;  // of the circle, for a colour to be one of the ball's
 constexpr double kDarkestLight = 0.01;
 constexpr int kLightSteps = 5;   // per channel, about one of the grid

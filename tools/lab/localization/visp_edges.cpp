@@ -81,7 +81,7 @@ Result<VispEdges> VispEdges::create(const std::vector<VispModel>& models, const 
     tracker.setFarClippingDistance(settings.far_m);
     tracker.setClipping(tracker.getClipping() | vpPolygon3D::FOV_CLIPPING);
     tracker.setScanLineVisibilityTest(true);  // without it hidden edges are sought as well
-    const Silence silence;  // it lists what it reads
+    const Silence silence;                    // it lists what it reads
     for (const VispModel& model : models) tracker.loadModel(model.path.string(), false, visp_of(model.X_WM));
   } catch (const vpException& error) {
     return fail(fmt::format("ViSP: {}", error.getMessage()));
