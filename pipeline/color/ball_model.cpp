@@ -82,6 +82,7 @@ void set_histograms(const std::vector<Textures>& samples, ColorModel& model) {
 /// Half the step of the grid that the lights came from.
 double half_step(const std::vector<Light>& lights) {
   std::vector<double> reds;
+  reds.reserve(lights.size());
   for (const Light& light : lights) reds.push_back(light.r);
   std::sort(reds.begin(), reds.end());
   double step = 0.0;
