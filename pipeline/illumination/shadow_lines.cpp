@@ -57,7 +57,6 @@ float total(const Ring& ring) {
 ShadowFinder::ShadowFinder(const Board& board, int probe, const ShadowParameters& parameters, double lamp_height_m)
     : board_(board),
       probe_(board.probe[static_cast<std::size_t>(probe)]),
-      index_(probe),
       parameters_(parameters),
       lamp_height_m_(lamp_height_m) {
   for (int ray = 0; ray < kRays; ++ray) {

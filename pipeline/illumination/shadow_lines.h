@@ -118,7 +118,6 @@ class ShadowFinder {
 
   Board board_;
   Probe probe_;
-  int index_;
   ShadowParameters parameters_;
   double lamp_height_m_;
   SoftStep step_;
