@@ -22,6 +22,7 @@ constexpr double kMoreAround = 0.15;  // of them may be around a followed one
 constexpr double kBetter = 0.12;      // in score, that a ball elsewhere must be
 constexpr double kInertia = 0.7;      // of the motion from image to image
 constexpr double kUnlike = 1.0;       // a divergence above all that can be
+constexpr double kMostShaded = 0.75;  // of a circle in the mask: the rest is too little to say how it is lit
 constexpr int kLeastSide_px = 32;     // of what is searched for dark histograms
 
 Box core_of(const Circle& circle) {
@@ -57,6 +58,25 @@ struct Part {
   int height = 0;
 };
 
+/// \return the first of [from, to) and the length, at least kLeastSide_px where there is so much.
+std::pair<int, int> span_of(int from, int to, int limit) {
+  const int length = std::min(limit, std::max(kLeastSide_px, to - from));
+  return {std::clamp(from, 0, limit - length), length};
+}
+
+/// Of even columns.
+Part part_of(int left, int right, int top, int bottom, const ImageView& image) {
+  const auto [x, width] = span_of(left / 2 * 2, std::min(image.width_px, (right + 1) / 2 * 2), image.width_px);
+  const auto [y, height] = span_of(top, bottom, image.height_px);
+  return {x, y, width, height};
+}
+
+Part part_around(const Box& box, const ImageView& image) {
+  const auto pixel = [](double edge, int limit) { return std::clamp(static_cast<int>(std::lround(edge)), 0, limit); };
+  return part_of(pixel(box.x, image.width_px), pixel(box.x + box.width, image.width_px), pixel(box.y, image.height_px),
+                 pixel(box.y + box.height, image.height_px), image);
+}
+
 /// The part of the image that may lie in shade, of even columns; width 0: nothing does.
 Part shaded_part(const ShadeMaskView& mask, const ImageView& image) {
   int left = mask.width;
@@ -76,20 +96,16 @@ Part shaded_part(const ShadeMaskView& mask, const ImageView& image) {
     right = std::max(right, static_cast<int>(last - row) + 1);
   }
   if (top >= bottom) return {};
-  const auto span = [](int from, int to, int limit) {
-    const int length = std::min(limit, std::max(kLeastSide_px, to - from));
-    return std::pair{std::min(from, limit - length), length};
-  };
-  const int first = first_pixel(left, mask.width, image.width_px) / 2 * 2;
-  const int last = std::min(image.width_px, (first_pixel(right, mask.width, image.width_px) + 1) / 2 * 2);
-  const auto [x, width] = span(first, last, image.width_px);
-  const auto [y, height] = span(first_pixel(top, mask.height, image.height_px),
-                                first_pixel(bottom, mask.height, image.height_px), image.height_px);
-  return {x, y, width, height};
+  return part_of(first_pixel(left, mask.width, image.width_px), first_pixel(right, mask.width, image.width_px),
+                 first_pixel(top, mask.height, image.height_px), first_pixel(bottom, mask.height, image.height_px),
+                 image);
 }
 
-/// Takes the labels away from what is surely lit.
-void cut_out_light(const ShadeMaskView& mask, const ImageView& image, const Part& part, imaging::ReducedImage& labels) {
+enum class Kept : std::uint8_t { kShaded, kLit };
+
+/// Takes the labels away from what is not kept.
+void keep_only(Kept kept, const ShadeMaskView& mask, const ImageView& image, const Part& part,
+               imaging::ReducedImage& labels) {
   const int factor = labels.factor;
   const auto reduced = [factor](int pixel, int start, int limit) {
     return std::clamp((pixel - start + factor - 1) / factor, 0, limit);
@@ -107,7 +123,7 @@ void cut_out_light(const ShadeMaskView& mask, const ImageView& image, const Part
       const int to = cell == mask.width
                          ? labels.width_px
                          : reduced(first_pixel(cell, mask.width, image.width_px), part.left, labels.width_px);
-      if (!shaded && to > from) std::fill(row + from, row + to, std::uint16_t{0});
+      if (shaded != (kept == Kept::kShaded) && to > from) std::fill(row + from, row + to, std::uint16_t{0});
       from = std::max(from, to);
     }
   }
@@ -134,7 +150,8 @@ struct IntegratedTracker::State {
         bright_divergence(ball.bright, p.search.divergence),
         dark_divergence(ball.dark, p.search.divergence),
         bright_labels(max_width, max_height),
-        dark_labels(max_width, max_height) {}
+        dark_labels(max_width, max_height),
+        lit_labels(max_width, max_height) {}
 
   struct Likeness {
     double divergence = kUnlike;
@@ -155,7 +172,10 @@ struct IntegratedTracker::State {
   [[nodiscard]] bool is_found(const CircleFit& fit) const;
   [[nodiscard]] bool is_kept(const CircleFit& fit) const;
   void remember(const Answer& answer);
-  [[nodiscard]] Likeness likeness_of(const Circle& of);
+  [[nodiscard]] Likeness likeness_of(const BallPixels& pixels, const Circle& of);
+  [[nodiscard]] bool looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of);
+  [[nodiscard]] double lit_divergence(const BallPixels& pixels, Box box, const WindowSearch& search,
+                                      BoxDivergence& divergence);
 
   IntegratedParameters parameters;
   BallModel ball;
@@ -165,6 +185,7 @@ struct IntegratedTracker::State {
   BoxDivergence dark_divergence;
   imaging::ReducedImage bright_labels;
   imaging::ReducedImage dark_labels;  // of dark_part
+  imaging::ReducedImage lit_labels;   // of what is surely lit about a circle
   SizeRange usual_sizes;
   double size_step = 1.0;
 
@@ -225,7 +246,7 @@ void IntegratedTracker::State::search_dark(const BallPixels& pixels, SearchReque
     dark_part = {};
     return;
   }
-  if (seen.mask_used) cut_out_light(pixels.mask, image, dark_part, dark_labels);
+  if (seen.mask_used) keep_only(Kept::kShaded, pixels.mask, image, dark_part, dark_labels);
   dark_matches = dark_search.search(dark_labels, request).value_or(SearchResult{});
   for (int i = 0; i < dark_matches.count; ++i) {
     Box& box = dark_matches.matches[static_cast<std::size_t>(i)].box;
@@ -263,7 +284,7 @@ IntegratedTracker::State::Answer IntegratedTracker::State::find(BallPixels pixel
       pixels.of_code = colors_under(static_cast<std::size_t>(match.light) % ball.of_code.size());
       const CircleFit fit = fit_circle(pixels, x, y, sizes);
       if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
-      const Likeness likeness = likeness_of(fit.circle);
+      const Likeness likeness = likeness_of(pixels, fit.circle);
       if (likeness.divergence <= parameters.found_divergence) best = {fit, likeness};
     }
   }
@@ -286,7 +307,8 @@ void IntegratedTracker::State::remember(const Answer& answer) {
 }
 
 /// Which histogram fits best what is inside a circle.
-IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const Circle& of) {
+IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const BallPixels& pixels, const Circle& of) {
+  if (looks_shaded_in_the_light(pixels, of)) return {};
   Box core = core_of(of);
   const auto bright = bright_divergence.of(bright_labels, core);
   Likeness likeness{bright.divergence, bright.light, false};
@@ -298,6 +320,26 @@ IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const C
   return likeness;
 }
 
+/// Is what lies outside the mask nearer to a dark histogram than to every bright one? Then it is something darker than the ball, however near
+/// to a bright one it comes.
+bool IntegratedTracker::State::looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of) {
+  if (pixels.mask.empty() || shade_share(pixels, of) > kMostShaded) return false;
+  const Box core = core_of(of);
+  return lit_divergence(pixels, core, dark_search, dark_divergence) <
+         lit_divergence(pixels, core, bright_search, bright_divergence);
+}
+
+/// Of a box without what may lie in shade.
+double IntegratedTracker::State::lit_divergence(const BallPixels& pixels, Box box, const WindowSearch& search,
+                                                BoxDivergence& divergence) {
+  const Part part = part_around(box, pixels.image);
+  if (!imaging::reduce(cut(pixels.image, part), bright_labels.factor, search.labels(), lit_labels)) return kUnlike;
+  keep_only(Kept::kLit, pixels.mask, pixels.image, part, lit_labels);
+  box.x -= part.left;
+  box.y -= part.top;
+  return divergence.of(lit_labels, box).divergence;
+}
+
 BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
                                             const SizeRange& sizes) {
   BallSighting seen;
@@ -307,7 +349,7 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
   Answer answer;
   if (located) {
     answer.fit = follow(pixels, sizes);
-    if (is_kept(answer.fit)) answer.likeness = likeness_of(answer.fit.circle);
+    if (is_kept(answer.fit)) answer.likeness = likeness_of(pixels, answer.fit.circle);
   }
   bool is_there = answer.likeness.divergence <= parameters.kept_divergence;
   if (!is_there || !is_found(answer.fit)) {

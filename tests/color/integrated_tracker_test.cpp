@@ -86,6 +86,19 @@ TEST(IntegratedTracker, ABrownBallInTheLightIsFoundWithoutAMaskAlone) {
   }
 }
 
+// A lighter brown comes nearer to the darkest bright histogram than some lit orange does, and still nearer to a dark one.
+TEST(IntegratedTracker, ALighterBrownBallInTheLightIsNotFoundEither) {
+  constexpr double kBetween = 0.64;  // bright histograms reach down to 0.6 / 0.8, dark ones up to 0.55 / 0.8
+  const test::QuarterMask mask;
+  Bench bench;
+  for (int i = 0; i < 10; ++i) {
+    const Circle moved{kInLight.x_px + 3 * i, kInLight.y_px, kInLight.radius_px};
+    EXPECT_FALSE(bench.look(with_ball(moved, kBetween), mask.view()).found) << i;
+  }
+  EXPECT_TRUE(bench.look(with_ball(kInShade, kBetween), mask.view()).found) << "where there may be shade";
+  EXPECT_TRUE(bench.look(with_ball(kInLight, 0.75), mask.view()).found) << "under the darkest light of the grid";
+}
+
 TEST(IntegratedTracker, TheMaskSavesWork) {
   const test::QuarterMask mask;
   Bench with_mask;
