@@ -12,19 +12,14 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/illumination/probe_observation.h"
-#include "platform/config/reader.h"
 #include "src/calibrate/board.h"
 #include "src/calibrate/intrinsics.h"
 #include "src/calibrate/mount.h"
 #include "src/calibrate/odometry.h"
-#include "src/calibrate/probes.h"
 #include "src/command.h"
 #include "src/input/camera_file.h"
 #include "src/input/image_input.h"
 #include "src/input/pose_file.h"
-#include "src/input/robot_calibration.h"
-#include "src/light/light_run.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -54,10 +49,6 @@ struct Options {
   std::string poses;
   std::string odometry;
   double stretch_m = 2.0;
-
-  std::string config;
-  std::string mount;
-  std::vector<double> lamp;
 };
 
 struct Views {
@@ -447,96 +438,6 @@ void add_board_options(CLI::App& command, Options& options) {
   command.add_option("--most", options.most, "views of the board to take at most")->check(CLI::Range(1, 1000));
 }
 
-Result<ProbeCalibration> probes_from(const Options& options) {
-  auto config = config::read_file<LightConfig>(options.config, config::Missing::kTakesDefault);
-  if (!config) return tl::unexpected(config.error());
-  const auto camera = read_camera(options.camera);
-  if (!camera) return tl::unexpected(camera.error());
-  Pose X_RC = config->mount.X_RC();
-  if (!options.mount.empty()) {
-    const auto mount = read_mount(options.mount);
-    if (!mount) return tl::unexpected(mount.error());
-    X_RC = *mount;
-    if (const auto taken = take_board(options.mount, config->probes.board); !taken)
-      return tl::unexpected(taken.error());
-  }
-  const auto board = illumination::make_board(config->probes.board, X_RC, *camera);
-  if (!board) return fail(fmt::format("{}: {}", options.config, board.error().message));
-  const auto poses = read_poses(options.poses);
-  if (!poses) return tl::unexpected(poses.error());
-  auto input = ImageInput::open({options.input, 0, 0, 0, 0});
-  if (!input) return tl::unexpected(input.error());
-  const Eigen::Vector3d p_WL(options.lamp[0], options.lamp[1], options.lamp[2]);
-  illumination::ProbeObserver observer(*board, config->probes, p_WL.z() - board->X_RB.translation().z());
-  std::vector<ProbeView> views;
-  std::string_view cause = "no image";
-  for (int number = 0;; ++number) {
-    const auto next = input->next();
-    if (next.end) break;
-    if (!next.image) continue;
-    ProbeView view;
-    view.image = number;
-    const PoseRow* row = nullptr;
-    for (std::size_t i = 0; i < poses->size(); ++i) {
-      const PoseRow& one = (*poses)[i];
-      if (one.frame ? *one.frame == number : static_cast<int>(i) == number) row = &one;
-    }
-    if (row == nullptr) return fail(fmt::format("{}: no pose of image {}", options.poses, number));
-    view.X_WR = row->X;
-    view.observation = observer.observe(next.image.view());
-    if (view.observation.status != illumination::ObservationStatus::kSeen) {
-      cause = illumination::name_of(view.observation.status);
-    }
-    views.push_back(view);
-  }
-  auto calibrated = calibrate_probes(*board, config->probes.board, views, p_WL);
-  if (!calibrated) {
-    return fail(
-        fmt::format("{}: {} (the last image without a shadow: {})", options.input, calibrated.error().message, cause));
-  }
-  return calibrated;
-}
-
-int run_probes(const Options& options) {
-  const auto calibration = probes_from(options);
-  if (!calibration) return report(calibration.error());
-  if (!options.output.empty()) {
-    if (const auto written = write_file(options.output, probes_as_toml(*calibration)); !written)
-      return report(written.error());
-  }
-  const illumination::BoardParameters& board = calibration->board;
-  if (options.json) {
-    nlohmann::json probes = nlohmann::json::array();
-    for (int i = 0; i < board.probes; ++i) {
-      const auto& probe = i == 0 ? board.left : board.right;
-      probes.push_back({{"apex_m", probe.apex_m},
-                        {"foot_m", probe.foot_m},
-                        {"apex_sigma_m", three(calibration->tip_sigma_m[static_cast<std::size_t>(i)])}});
-    }
-    fmt::print("{}\n", nlohmann::json{{"rms_m", calibration->rms_m},
-                                      {"rms_before_m", calibration->rms_before_m},
-                                      {"images", calibration->views},
-                                      {"shadows", calibration->shadows},
-                                      {"board", {{"turn_deg", board.turn_deg}, {"probe", probes}}}}
-                           .dump(1));
-    return kSuccess;
-  }
-  fmt::print("{} images, {} shadows of tips\n", calibration->views, calibration->shadows);
-  fmt::print("residual  {:.2f} mm RMS on the board, {:.2f} mm before\n", 1e3 * calibration->rms_m,
-             1e3 * calibration->rms_before_m);
-  fmt::print("board     turned {:.3f}, {:.3f}, {:.3f} degrees, +- {:.3f}, {:.3f}, {:.3f}\n", board.turn_deg[0],
-             board.turn_deg[1], board.turn_deg[2], calibration->turn_sigma_deg.x(), calibration->turn_sigma_deg.y(),
-             calibration->turn_sigma_deg.z());
-  for (int i = 0; i < board.probes; ++i) {
-    const auto& probe = i == 0 ? board.left : board.right;
-    const auto& sigma = calibration->tip_sigma_m[static_cast<std::size_t>(i)];
-    fmt::print("tip {}     {:.4f}, {:.4f}, {:.4f} m in the robot's frame, +- {:.4f}, {:.4f}, {:.4f}\n", i,
-               probe.apex_m[0], probe.apex_m[1], probe.apex_m[2], sigma.x(), sigma.y(), sigma.z());
-  }
-  if (!options.output.empty()) fmt::print("written   {}\n", options.output);
-  return kSuccess;
-}
-
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, int& exit_code) {
@@ -577,21 +478,7 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
   mount->add_flag("--json", options->json, "as JSON");
   mount->callback([options, &exit_code] { exit_code = run_mount(*options); });
 
-  auto* probes = command->add_subcommand(
-      "probes", "board, probes and the camera against them, from images with a lamp at a known place");
-  probes->add_option("--input", options->input, "images of the probes: video or image folder")->required();
-  probes->add_option("--camera", options->camera, "intrinsics (YAML)")->required();
-  probes->add_option("--config", options->config, "what was measured by hand: as config/illumination/lamp-robot.toml")
-      ->required();
-  probes->add_option("--mount", options->mount, "robot.toml with [mount], instead of the configuration's");
-  probes->add_option("--poses", options->poses, "poses of the robot in the world, CSV, a row per image")->required();
-  probes->add_option("--lamp", options->lamp, "X,Y,Z of the lamp in metres, world frame")
-      ->delimiter(',')
-      ->expected(3)
-      ->required();
-  probes->add_option("--output", options->output, "robot file to write (TOML, sections [mount] and [board])");
-  probes->add_flag("--json", options->json, "as JSON");
-  probes->callback([options, &exit_code] { exit_code = run_probes(*options); });
+  add_calibrate_probes(*command, exit_code);
 
   auto* odometry =
       command->add_subcommand("odometry", "scales of way and turn, from a round with true or localised poses");

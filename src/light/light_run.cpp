@@ -2,14 +2,11 @@
 
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "platform/config/reader.h"
-#include "src/input/camera_file.h"
-#include "src/input/robot_calibration.h"
+#include "platform/count_marks.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -18,7 +15,6 @@ namespace {
 using illumination::LampStatus;
 using illumination::ObservationStatus;
 
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr const char* kColumns = "frame,found,reason,x,y,z,probes,sigma_m";
 
 std::string unanswered_row(int frame, std::string_view reason) {
@@ -27,65 +23,19 @@ std::string unanswered_row(int frame, std::string_view reason) {
 
 }  // namespace
 
-geometry::Pose MountParameters::X_RC() const {
-  const double down = down_deg / kDegPerRad;
-  const double s = std::sin(down);
-  const double c = std::cos(down);
-  geometry::Pose X = geometry::Pose::Identity();
-  X.linear().col(0) = Eigen::Vector3d(0.0, -1.0, 0.0);
-  X.linear().col(1) = Eigen::Vector3d(-s, 0.0, -c);
-  X.linear().col(2) = Eigen::Vector3d(c, 0.0, -s);
-  const Eigen::Vector3d turn(turn_deg[0], turn_deg[1], turn_deg[2]);
-  X.linear() = geometry::rotation_of(turn / kDegPerRad) * X.linear();
-  X.translation() = Eigen::Vector3d(position_m[0], position_m[1], position_m[2]);
-  return X;
-}
-
-Result<void> take_board(const std::string& robot_file, illumination::BoardParameters& board) {
-  const auto stated = read_board(robot_file);
-  if (!stated) return tl::unexpected(stated.error());
-  if (!*stated) return {};
-  const CalibratedBoard& calibrated = **stated;
-  board.position_m = calibrated.position_m;
-  board.turn_deg = calibrated.turn_deg;
-  board.width_m = calibrated.width_m;
-  board.depth_m = calibrated.depth_m;
-  board.probes = static_cast<int>(calibrated.probe.size());
-  for (std::size_t i = 0; i < calibrated.probe.size(); ++i) {
-    illumination::ProbeParameters& probe = i == 0 ? board.left : board.right;
-    probe.apex_m = calibrated.probe[i].apex_m;
-    probe.foot_m = calibrated.probe[i].foot_m;
-    probe.base_radius_m = calibrated.probe[i].base_radius_m;
-  }
-  return {};
-}
-
-LightRun::LightRun(const LightOptions& options, const LightConfig& config, const illumination::Board& board,
-                   ImageInput input, std::vector<PoseRow> poses)
+LightRun::LightRun(const LightOptions& options, LightSetup setup, std::vector<PoseRow> poses)
     : options_(options),
-      config_(config),
-      input_(std::move(input)),
+      config_(setup.config),
+      input_(std::move(setup.input)),
       poses_(std::move(poses)),
-      observer_(board, config_.probes, config_.lamp.height_m - board.X_RB.translation().z()),
-      filter_(board, config_.lamp),
+      observer_(setup.board, config_.probes, config_.lamp.height_m - setup.board.X_RB.translation().z()),
+      filter_(setup.board, config_.lamp),
       causes_(static_cast<std::size_t>(ObservationStatus::kSaturated) + 1) {}
 
 Result<LightRun> LightRun::open(const LightOptions& options) {
-  auto config = config::read_file<LightConfig>(options.config, config::Missing::kTakesDefault);
-  if (!config) return tl::unexpected(config.error());
-  const auto camera = read_camera(options.camera);
-  if (!camera) return tl::unexpected(camera.error());
-  geometry::Pose X_RC = config->mount.X_RC();
-  if (!options.mount.empty()) {
-    const auto mount = read_mount(options.mount);
-    if (!mount) return tl::unexpected(mount.error());
-    X_RC = *mount;
-    if (const auto taken = take_board(options.mount, config->probes.board); !taken)
-      return tl::unexpected(taken.error());
-  }
-  const auto board = illumination::make_board(config->probes.board, X_RC, *camera);
-  if (!board) return fail(fmt::format("{}: {}", options.config, board.error().message));
-  if (const auto checked = illumination::check_lamp(*board, config->lamp); !checked) {
+  auto setup = open_light_setup(options.config, options.camera, options.mount, options.input);
+  if (!setup) return tl::unexpected(setup.error());
+  if (const auto checked = illumination::check_lamp(setup->board, setup->config.lamp); !checked) {
     return fail(fmt::format("{}: {}", options.config, checked.error().message));
   }
   std::vector<PoseRow> poses;
@@ -94,14 +44,7 @@ Result<LightRun> LightRun::open(const LightOptions& options) {
     if (!read) return tl::unexpected(read.error());
     poses = std::move(*read);
   }
-  auto input = ImageInput::open({options.input});
-  if (!input) return tl::unexpected(input.error());
-  if (input->mode().width_px != camera->width_px || input->mode().height_px != camera->height_px) {
-    return fail(fmt::format("{}: images of {}x{}, but {} is of a camera of {}x{}", options.input,
-                            input->mode().width_px, input->mode().height_px, options.camera, camera->width_px,
-                            camera->height_px));
-  }
-  return LightRun(options, *config, *board, std::move(*input), std::move(poses));
+  return LightRun(options, std::move(*setup), std::move(poses));
 }
 
 Result<bool> LightRun::step() {
@@ -113,11 +56,16 @@ Result<bool> LightRun::step() {
     rows_ += unanswered_row(frame, "unreadable");
     return true;
   }
+  count_stage_begin();
   const auto observation = observer_.observe(next.image.view());
+  count_stage_end("probes");
   ++causes_[static_cast<std::size_t>(observation.status)];
-  const auto lamps = illumination::locate_lamps(observer_.board(), config_.lamp, observation);
   const geometry::Pose* X_WR = pose_of(frame);
+  count_stage_begin();
+  const auto lamps = illumination::locate_lamps(observer_.board(), config_.lamp, observation);
   if (X_WR != nullptr) filter_.update(observation, *X_WR, geometry::Matrix6d::Zero());
+  count_stage_end("lamp");
+  count_image_end();
   bool found = false;
   for (int i = 0; i < lamps.count; ++i) {
     const auto& lamp = lamps.lamp[static_cast<std::size_t>(i)];
