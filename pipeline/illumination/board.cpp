@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLeastDepth_m = 1e-6;
+constexpr double kConeMargin_m = 0.0013;
 
 Vector3d vector(const std::array<double, 3>& v) {
   return {v[0], v[1], v[2]};
@@ -176,6 +177,16 @@ bool within(const Outline& outline, const Vector2d& foot, double radius_m, const
   // Beyond both tangents' sides, but is it on the shadow's side of the base?
   const Vector2d forward = -(outline.inward[0] + outline.inward[1]);
   return from_foot.dot(forward) > 0.0;
+}
+
+bool is_seen(const Board& board, const std::array<Outline, kMostProbes>& behind, const Vector2d& p_B) {
+  if (std::abs(p_B.x()) > board.depth_m / 2 - kBoardMargin_m || std::abs(p_B.y()) > board.width_m / 2 - kBoardMargin_m)
+    return false;
+  for (int i = 0; i < board.probes; ++i) {
+    const Probe& probe = board.probe[static_cast<std::size_t>(i)];
+    if (within(behind[static_cast<std::size_t>(i)], probe.foot_B, probe.radius_m, p_B, kConeMargin_m)) return false;
+  }
+  return true;
 }
 
 }  // namespace cgsr::illumination

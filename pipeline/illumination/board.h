@@ -136,4 +136,10 @@ Outline outline_of(const Eigen::Vector2d& foot, double radius_m, const Eigen::Ve
 bool within(const Outline& outline, const Eigen::Vector2d& foot, double radius_m, const Eigen::Vector2d& point,
             double margin_m);
 
+/// From the board's border, where its brightness is no longer its own.
+inline constexpr double kBoardMargin_m = 0.003;
+
+/// Is a place of the board's plane on the board, and not behind a cone? \param behind  what each cone hides from the camera.
+bool is_seen(const Board& board, const std::array<Outline, kMostProbes>& behind, const Eigen::Vector2d& p_B);
+
 }  // namespace cgsr::illumination

@@ -13,7 +13,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kBoardMargin_m = 0.003;
 constexpr double kBlur_px = 0.45;        // of lens, pixel and reading between pixels
 constexpr double kStep_m = 0.0025;       // between places along the outline
 constexpr double kFrom_px = -2.5;        // across: from within the cone
@@ -34,6 +33,7 @@ constexpr int kLastIterations = 2;  // with all
 constexpr std::array kNear_px{1.0, 1.7, 2.4};
 constexpr std::array kFar_px{9.0, 11.0, 13.0};
 constexpr float kLeastFall = 1.4F;  // grey levels, mean
+constexpr std::array kTrialAlong_m{-0.002, 0.002, 0.006};
 constexpr std::array kTrialOut_m{-0.0015, 0.0005, 0.0025, 0.005, 0.009};
 
 enum Unknown : std::uint8_t {
@@ -232,6 +232,28 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
   return sums;
 }
 
+// Where a strip may end, at most two places: what is missing falls from one place to the next ones.
+ConeStrip::Ends ConeStrip::ends_of(const std::array<float, kPlaces>& missing) {
+  constexpr std::size_t kWindow = 4;
+  Ends ends;
+  for (std::size_t i = kWindow; i + kWindow <= kPlaces; ++i) {
+    float before = 0.0F;
+    float after = 0.0F;
+    for (std::size_t k = 0; k < kWindow; ++k) {
+      before += missing[i - 1 - k];
+      after += missing[i + k];
+    }
+    const float fall = before - std::max(0.0F, after);
+    if (fall > ends.fall[0]) {
+      if (i > ends.place[0] + kWindow) ends.fall[1] = ends.fall[0], ends.place[1] = ends.place[0];
+      ends.fall[0] = fall, ends.place[0] = i;
+    } else if (fall > ends.fall[1] && i > ends.place[0] + kWindow) {
+      ends.fall[1] = fall, ends.place[1] = i;
+    }
+  }
+  return ends;
+}
+
 // Where the tip may be, out of what the outline alone does not explain.
 bool ConeStrip::start_from(Unknowns& x, int count) const {
   std::array<float, kPlaces> missing{};
@@ -249,54 +271,34 @@ bool ConeStrip::start_from(Unknowns& x, int count) const {
     residual[static_cast<std::size_t>(i)] = r;
     if (w > 0.3F) missing[static_cast<std::size_t>(sample.place)] += r;
   }
-  // The tip is where it ends: what is missing falls from one place to the next ones.
-  constexpr std::size_t kWindow = 4;
-  std::array<std::size_t, 2> ends{};
-  std::array<float, 2> falls{};
-  for (std::size_t i = kWindow; i + kWindow <= kPlaces; ++i) {
-    float before = 0.0F;
-    float after = 0.0F;
-    for (std::size_t k = 0; k < kWindow; ++k) {
-      before += missing[i - 1 - k];
-      after += missing[i + k];
-    }
-    const float fall = before - std::max(0.0F, after);
-    if (fall > falls[0]) {
-      if (i > ends[0] + kWindow) falls[1] = falls[0], ends[1] = ends[0];
-      falls[0] = fall, ends[0] = i;
-    } else if (fall > falls[1] && i > ends[0] + kWindow) {
-      falls[1] = fall, ends[1] = i;
-    }
-  }
-  float best = 0.0F;
+  const Ends ends = ends_of(missing);
+  const std::size_t tried = ends.fall[1] < 0.5F * ends.fall[0] ? 1 : 2;
+  const Vector2d foot(0.0, -probe_.radius_m);
   const Unknowns from = x;
-  for (int trial = 0; trial < 30; ++trial) {
-    if (trial >= 15 && falls[1] < 0.5F * falls[0]) break;
-    {
-      const double along_m = 0.004 * (trial % 3) - 0.002;
-      const double out_m = kTrialOut_m[static_cast<std::size_t>(trial % 5)];
-      const Vector2d tip((static_cast<double>(ends[trial < 15 ? 0 : 1]) + 0.5) * kStep_m + along_m, out_m);
-      const Vector2d foot(0.0, -probe_.radius_m);
-      const Outline outline = outline_of(foot, probe_.radius_m, tip);
-      if (!outline.valid) continue;
-      const auto over_length = static_cast<float>(1.0 / (tip - outline.touch[0]).norm());
-      float hh = 0.0F;
-      float hr = 0.0F;
-      for (int i = 0; i < count; i += 2) {
-        const Sample& sample = samples_[static_cast<std::size_t>(i)];
-        if (sample.at.y() < f[kEdge]) continue;
-        const Eigen::Vector2f q(sample.at.x(), sample.at.y() - f[kEdge] + static_cast<float>(probe_.radius_m));
-        const float h = hidden(q, outline, over_length, blur_m_);
-        hh += h * h;
-        hr += h * residual[static_cast<std::size_t>(i)];
-      }
-      if (hh < 1.0F || hr <= 0.0F || hr * hr <= best * hh) continue;
-      best = hr * hr / hh;
-      x = from;
-      x[kTipAlong] = tip.x();
-      x[kTipOut] = tip.y();
-      x[kDark] = static_cast<double>(hr / hh);
+  float best = 0.0F;
+  for (std::size_t trial = 0; trial < tried * kTrialAlong_m.size() * kTrialOut_m.size(); ++trial) {
+    const std::size_t place = ends.place[trial / (kTrialAlong_m.size() * kTrialOut_m.size())];
+    const Vector2d tip((static_cast<double>(place) + 0.5) * kStep_m + kTrialAlong_m[trial % kTrialAlong_m.size()],
+                       kTrialOut_m[trial % kTrialOut_m.size()]);
+    const Outline outline = outline_of(foot, probe_.radius_m, tip);
+    if (!outline.valid) continue;
+    const auto over_length = static_cast<float>(1.0 / (tip - outline.touch[0]).norm());
+    float hh = 0.0F;
+    float hr = 0.0F;
+    for (int i = 0; i < count; i += 2) {
+      const Sample& sample = samples_[static_cast<std::size_t>(i)];
+      if (sample.at.y() < f[kEdge]) continue;
+      const Eigen::Vector2f q(sample.at.x(), sample.at.y() - f[kEdge] + static_cast<float>(probe_.radius_m));
+      const float h = hidden(q, outline, over_length, blur_m_);
+      hh += h * h;
+      hr += h * residual[static_cast<std::size_t>(i)];
     }
+    if (hh < 1.0F || hr <= 0.0F || hr * hr <= best * hh) continue;
+    best = hr * hr / hh;
+    x = from;
+    x[kTipAlong] = tip.x();
+    x[kTipOut] = tip.y();
+    x[kDark] = static_cast<double>(hr / hh);
   }
   return static_cast<double>(best) > 0.25 * kLeastGain;
 }

@@ -6,7 +6,7 @@
 
 #include "pipeline/illumination/board.h"
 #include "pipeline/illumination/luma_view.h"
-#include "pipeline/illumination/shadow_lines.h"
+#include "pipeline/illumination/probe_shadow.h"
 #include "pipeline/illumination/soft_step.h"
 
 namespace cgsr::illumination {
@@ -61,6 +61,11 @@ class ConeStrip {
                               const std::array<Outline, kMostProbes>& behind, std::size_t side, ProbeShadow& shadow,
                               double& gain);
   [[nodiscard]] Sums sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts, int every) const;
+  struct Ends {
+    std::array<std::size_t, 2> place{};
+    std::array<float, 2> fall{};  ///< how much is missing before and not behind it; the larger one first.
+  };
+  static Ends ends_of(const std::array<float, kPlaces>& missing);
   [[nodiscard]] bool start_from(Unknowns& x, int count) const;
   [[nodiscard]] bool is_shown(const Unknowns& x, int count) const;
   [[nodiscard]] float hidden(const Eigen::Vector2f& from_foot, const Outline& outline, float over_length,

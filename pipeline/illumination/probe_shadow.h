@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+
+#include <Eigen/Core>
+
+#include "platform/parameters.h"
+
+namespace cgsr::illumination {
+
+struct ShadowParameters {
+  double lamp_radius_m = 0.05;
+  double least_contrast = 2.0;
+  double least_share = 0.015;
+  double least_support = 0.7;
+  double largest_angle_deg = 76.0;
+  double spacing_px = 5.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("lamp_radius_m", self.lamp_radius_m, {0.0, 1.0}, "m", "of a lamp: how soft shadows are");
+    visit.number("least_contrast", self.least_contrast, {0.5, 100.0}, "grey levels", "between board and shadow");
+    visit.number("least_share", self.least_share, {0.0, 1.0}, "", "the same, of the board's brightness");
+    visit.number("least_support", self.least_support, {0.0, 1.0}, "",
+                 "of the places along a line, how many must show the shadow's own contrast");
+    visit.number("largest_angle_deg", self.largest_angle_deg, {30.0, 88.0}, "deg",
+                 "of the light from the vertical: beyond it shadows are not looked for");
+    visit.number("spacing_px", self.spacing_px, {1.0, 50.0}, "px", "between the places along a line");
+  }
+};
+
+/// The shadow of one probe's tip on the board's plane, found by the outline of the whole shadow.
+struct ProbeShadow {
+  Eigen::Vector2d p_BS = Eigen::Vector2d::Zero();
+  /// Of what this image's noise and the base's place do to p_BS. With one line only it is large along that line.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  /// d p_BS / d step of the camera (geometry::moved(X_BC, step)): the same camera saw the other probe.
+  Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+  int lines = 0;  ///< 2: the tip is known; 1: the plane through lamp, tip and this line.
+  std::array<bool, 2> line_seen{};
+  double contrast = 0.0;  ///< grey levels.
+  double support = 0.0;   ///< share of places along the lines that show it.
+  double rms = 0.0;       ///< grey levels that the model does not explain.
+};
+
+}  // namespace cgsr::illumination
