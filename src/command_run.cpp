@@ -87,7 +87,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--model", options->model, "object to follow instead of the one that the file names");
   command->add_option("--seed", options->seed, "of the simulation instead of the one that the file names")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--duration", options->run.duration_s, "end after that many seconds")->check(CLI::PositiveNumber);
+  command->add_option("--duration", options->run.duration_s, "end after that many seconds")
+      ->check(CLI::Range(1e-3, 1e6));
   command->add_flag("--dry-run", options->run.dry_run, "compute and record, command nothing");
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
   command->add_option("--csv", options->run.csv, "write a row per image");

@@ -169,7 +169,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_option("name", options.names, "tables to reproduce; none: all that are not by name only");
   app.add_flag("--list", options.list, "name what there is");
   app.add_option("--seed", options.seed, "of everything that is drawn at random")->capture_default_str();
-  app.add_option("--trials", options.trials, "instead of each table's own number")->check(CLI::PositiveNumber);
+  app.add_option("--trials", options.trials, "instead of each table's own number")->check(CLI::Range(1, 1000000));
   app.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   app.add_option("--data", options.data, "folder of recorded sequences")->envname("CGSR_DATA");
   app.add_option("--videos", options.videos,
@@ -182,7 +182,8 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
 void add_film_options(CLI::App& command, FilmOptions& options) {
   command.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   command.add_option("--scene", options.scene, "seed of a generated film");
-  command.add_option("--images", options.images, "how many, the one learned from included")->check(CLI::PositiveNumber);
+  command.add_option("--images", options.images, "how many, the one learned from included")
+      ->check(CLI::Range(1, 1000000));
   command.add_flag("--absent", options.absent, "generated film: the object is in the first image alone");
 }
 

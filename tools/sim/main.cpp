@@ -94,7 +94,7 @@ void add_run(CLI::App& command, RunWords& words) {
   command.add_option("--seed", words.run.seed, "of noise, slip and how far actors go astray")
       ->check(CLI::Range(0, 1000000000))
       ->capture_default_str();
-  command.add_option("--duration", words.run.duration_s, "end after that many seconds")->check(CLI::PositiveNumber);
+  command.add_option("--duration", words.run.duration_s, "end after that many seconds")->check(CLI::Range(1e-3, 1e6));
   command.add_option("--size", words.size, "WIDTHxHEIGHT; 640x480 when not given");
   command.add_option("--threads", words.run.threads, "the images do not depend on it")
       ->check(CLI::Range(1, 64))
