@@ -15,17 +15,22 @@ Cost cost_of(const nlohmann::json& figures) {
 
 }  // namespace
 
-Result<Counted> count_lab(const std::vector<std::string>& command, const std::string& config_file) {
+Result<Counted> count_program(const std::string& program, const std::vector<std::string>& arguments) {
   const auto scratch = scratch_json();
-  std::vector<std::string> words{CGSR_COUNT_TOOL, "--json", scratch.string(), "--",
-                                 std::filesystem::read_symlink("/proc/self/exe").string()};
-  words.insert(words.end(), command.begin(), command.end());
-  if (!config_file.empty()) words.insert(words.end(), {"--config", config_file});
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::vector<std::string> words{CGSR_COUNT_TOOL, "--json", scratch.string(), "--", (folder / program).string()};
+  words.insert(words.end(), arguments.begin(), arguments.end());
   const auto result = run_for_json(words, scratch);
   if (!result) return tl::unexpected(result.error());
   Counted counted{{}, cost_of(result->at("image")), result->at("images").get<int>()};
   for (const auto& [name, figures] : result->at("stages").items()) counted.stages[name] = cost_of(figures);
   return counted;
+}
+
+Result<Counted> count_lab(const std::vector<std::string>& command, const std::string& config_file) {
+  std::vector<std::string> arguments = command;
+  if (!config_file.empty()) arguments.insert(arguments.end(), {"--config", config_file});
+  return count_program(std::filesystem::read_symlink("/proc/self/exe").filename().string(), arguments);
 }
 
 Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,

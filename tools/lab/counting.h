@@ -28,6 +28,9 @@ struct Counted {
 Result<Counted> count_follow(std::string_view tracker, const std::string& config_file,
                              const std::vector<std::string>& film);
 
+/// The same of a program that lies beside this one. \param program  its name, e.g. "cgsr".
+Result<Counted> count_program(const std::string& program, const std::vector<std::string>& arguments);
+
 /// The same of any command of this program. \param words  the command and its options, without `--config`.
 Result<Counted> count_lab(const std::vector<std::string>& words, const std::string& config_file);
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <numbers>
 #include <utility>
 
+#include "hal/sim/calibration/calibration_files.h"
 #include "pipeline/geometry/pose.h"
 #include "platform/config/reader.h"
 
@@ -21,6 +21,15 @@ constexpr double kLongest_m = 3.0;  // longer things are walls and floors
 
 std::array<double, 3> triple(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
+}
+
+sim::CalibrationErrors copy_errors() {
+  sim::CalibrationErrors errors;
+  errors.focal = 0.002;
+  errors.centre_px = 0.64;  // 0.2 % of half an image
+  errors.mount_deg = 0.3;
+  errors.probe_m = 0.0005;
+  return errors;
 }
 
 }  // namespace
@@ -79,6 +88,11 @@ std::vector<sim::ProbeShadow> ProbeRoom::truth(const sim::Pose& X_WR, int lamp) 
   return sim::probe_shadows(photographer_->renderer(), now, X_WR * sim::mount_of(world_.scene.robots.front()), 0, lamp);
 }
 
+Result<void> ProbeRoom::write_copy(std::uint32_t seed, const std::filesystem::path& folder) const {
+  const sim::CalibrationErrors errors = copy_errors();
+  return sim::write_calibration(sim::calibrated_copy(world_.scene, 0, errors, seed), errors, seed, folder);
+}
+
 bool ProbeRoom::is_free(const sim::Pose& X_WR) const {
   const Vector3d p = X_WR.translation();
   if (p.x() < 0.45 || p.x() > 8.55 || p.y() < 0.45 || p.y() > 6.0) return false;
@@ -114,11 +128,7 @@ std::optional<sim::Pose> ProbeRoom::standpoint(double angle_rad, Random& random)
 }
 
 RobotCopy RobotCopy::measured(const ProbeRoom& room, std::uint32_t seed, double factor) {
-  sim::CalibrationErrors errors;
-  errors.focal = 0.002;
-  errors.centre_px = 0.64;  // 0.2 % of half an image
-  errors.mount_deg = 0.3;
-  errors.probe_m = 0.0005;
+  const sim::CalibrationErrors errors = copy_errors();
   const auto copy = sim::calibrated_copy(room.world_.scene, 0, errors.times(factor), seed);
   RobotCopy robot;
   robot.X_RC = copy.X_RC;

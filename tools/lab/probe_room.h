@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -35,6 +36,9 @@ class ProbeRoom {
 
   /// Where the shadows of the tips truly fall.
   std::vector<sim::ProbeShadow> truth(const sim::Pose& X_WR, int lamp = 0);
+
+  /// Writes what a copy of this robot and room that was measured with the stated errors says: sim::write_calibration().
+  [[nodiscard]] Result<void> write_copy(std::uint32_t seed, const std::filesystem::path& folder) const;
 
   /// Can a robot stand there: within the walls and in no furniture?
   [[nodiscard]] bool is_free(const sim::Pose& X_WR) const;

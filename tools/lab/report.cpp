@@ -9,6 +9,16 @@
 
 namespace cgsr::lab {
 
+Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials) {
+  Row out;
+  out.row = std::move(row);
+  out.quantity = std::move(quantity);
+  out.unit = std::move(unit);
+  out.ours = value;
+  out.trials = static_cast<int>(trials);
+  return out;
+}
+
 Row mean_row(std::string row, std::string quantity, std::string unit, const std::vector<double>& values,
              std::uint64_t seed) {
   const auto trials = static_cast<int>(values.size());

@@ -69,6 +69,9 @@ struct Report {
   std::vector<Picture> pictures = {};
 };
 
+/// A figure without an interval.
+Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials);
+
 /// A row measured as the mean of independent trials.
 Row mean_row(std::string row, std::string quantity, std::string unit, const std::vector<double>& values,
              std::uint64_t seed);

@@ -152,16 +152,6 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials) {
-  Row out;
-  out.row = std::move(row);
-  out.quantity = std::move(quantity);
-  out.unit = std::move(unit);
-  out.ours = value;
-  out.trials = static_cast<int>(trials);
-  return out;
-}
-
 void report_case(const Case& which, const Outcome& outcome, Report& report) {
   const char* const answered = which.lamp_to_find ? "answered" : "answered, wrongly";
   report.rows.push_back(share_row(which.name, answered, outcome.answered, outcome.asked));

@@ -91,16 +91,6 @@ double quantile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
-Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials) {
-  Row out;
-  out.row = std::move(row);
-  out.quantity = std::move(quantity);
-  out.unit = std::move(unit);
-  out.ours = value;
-  out.trials = static_cast<int>(trials);
-  return out;
-}
-
 }  // namespace
 
 Result<Report> lamp_drives(const Setting& setting) {

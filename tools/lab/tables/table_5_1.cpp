@@ -1,14 +1,20 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <string>
 
 #include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/illumination/lamp.h"
+#include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
+#include "tools/lab/image.h"
 #include "tools/lab/probe_room.h"
 
 namespace cgsr::lab {
@@ -17,6 +23,7 @@ namespace {
 using illumination::LampStatus;
 
 constexpr int kTrials = 150;
+constexpr int kCountedImages = 30;
 constexpr std::array kAngles_deg{20, 30, 40, 50, 60};
 constexpr std::array kTheirBoth_cm{11.2, 13.4, 18.1, 21.9, 29.0};
 constexpr std::array kTheirOne_cm{20.5, 21.8, 25.9, 28.1, 33.7};
@@ -78,6 +85,30 @@ Result<Trials> run(ProbeRoom& room, int row, int tips, int wanted, const Setting
   return trials;
 }
 
+/// What `cgsr light` costs an image, on a film of random standpoints of both kinds.
+Result<Counted> count_observation(ProbeRoom& room, const Setting& setting) {
+  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-lab-{}-probes", getpid());
+  std::filesystem::create_directories(folder / "img");
+  Random random = Random(setting.seed).fork(0x51C);
+  const auto seed = static_cast<std::uint32_t>(random.next());
+  if (auto written = room.write_copy(seed, folder); !written) return tl::unexpected(written.error());
+  for (int i = 0; i < kCountedImages;) {
+    const int angle_deg = kAngles_deg[static_cast<std::size_t>(i) % kAngles_deg.size()];
+    const auto X_WR = room.standpoint(angle_deg * std::numbers::pi / 180.0, random);
+    if (!X_WR) return fail(fmt::format("there is no free standpoint at {} degrees", angle_deg));
+    if (std::ranges::none_of(room.truth(*X_WR), &sim::ProbeShadow::visible)) continue;
+    const ImageView photo = room.shoot(*X_WR, seed, static_cast<std::uint64_t>(i));
+    const Image image =
+        image_of_yuyv({photo.data, photo.data + photo.stride_bytes * photo.height_px}, photo.width_px, photo.height_px);
+    cv::imwrite((folder / "img" / fmt::format("{:04}.png", i++)).string(), image.bgr);
+  }
+  auto counted =
+      count_program("cgsr", {"light", "--config", CGSR_PROBES, "--camera", (folder / "camera.yaml").string(), "--mount",
+                             (folder / "robot.toml").string(), "--input", (folder / "img").string()});
+  std::filesystem::remove_all(folder);
+  return counted;
+}
+
 }  // namespace
 
 Result<Report> table_5_1(const Setting& setting) {
@@ -117,6 +148,15 @@ Result<Report> table_5_1(const Setting& setting) {
     }
   }
   report.plots.push_back(std::move(plot));
+  if (setting.count) {
+    setting.progress("counting instructions");
+    const auto counted = count_observation(**room, setting);
+    if (!counted) return tl::unexpected(counted.error());
+    for (const auto& [stage, cost] : counted->stages) {
+      report.rows.push_back(plain_row("cost, " + stage, "mean", "Minstr", cost.mean_minstr, kCountedImages));
+      report.rows.push_back(plain_row("cost, " + stage, "worst", "Minstr", cost.worst_minstr, kCountedImages));
+    }
+  }
   report.notes.emplace_back(
       "Errors in the robot's frame, all three coordinates; one image each; a ball-shaped lamp of 5 cm radius and 600 "
       "lm in "
