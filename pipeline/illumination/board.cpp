@@ -162,21 +162,9 @@ Outline outline_of(const Vector2d& foot, double radius_m, const Vector2d& tip_sh
     outline.touch[side] = foot + radius_m * outward;
     outline.inward[side] = -outward;
   }
+  outline.backward = outline.inward[0] + outline.inward[1];
   outline.valid = true;
   return outline;
-}
-
-bool within(const Outline& outline, const Vector2d& foot, double radius_m, const Vector2d& point, double margin_m) {
-  const Vector2d from_foot = point - foot;
-  const double reach = radius_m + margin_m;
-  if (from_foot.squaredNorm() <= reach * reach) return true;
-  if (!outline.valid) return false;
-  for (std::size_t side = 0; side < 2; ++side) {
-    if ((point - outline.touch[side]).dot(outline.inward[side]) < -margin_m) return false;
-  }
-  // Beyond both tangents' sides, but is it on the shadow's side of the base?
-  const Vector2d forward = -(outline.inward[0] + outline.inward[1]);
-  return from_foot.dot(forward) > 0.0;
 }
 
 bool is_seen(const Board& board, const std::array<Outline, kMostProbes>& behind, const Vector2d& p_B) {

@@ -128,13 +128,21 @@ Eigen::Vector2d cast(const Eigen::Vector3d& from, const Eigen::Vector3d& tip);
 struct Outline {
   std::array<Eigen::Vector2d, 2> touch;
   std::array<Eigen::Vector2d, 2> inward;
-  bool valid = false;  ///< the shadow of the tip lies outside the base.
+  Eigen::Vector2d backward;  ///< from the shadow to the foot: the sum of the normals.
+  bool valid = false;        ///< the shadow of the tip lies outside the base.
 };
 Outline outline_of(const Eigen::Vector2d& foot, double radius_m, const Eigen::Vector2d& tip_shadow);
 
 /// Is a point of the board within the outline or the base, widened by a margin?
-bool within(const Outline& outline, const Eigen::Vector2d& foot, double radius_m, const Eigen::Vector2d& point,
-            double margin_m);
+inline bool within(const Outline& outline, const Eigen::Vector2d& foot, double radius_m, const Eigen::Vector2d& point,
+                   double margin_m) {
+  const Eigen::Vector2d from_foot = point - foot;
+  const double reach = radius_m + margin_m;
+  if (from_foot.squaredNorm() <= reach * reach) return true;
+  if (!outline.valid || from_foot.dot(outline.backward) >= 0.0) return false;
+  return (point - outline.touch[0]).dot(outline.inward[0]) >= -margin_m &&
+         (point - outline.touch[1]).dot(outline.inward[1]) >= -margin_m;
+}
 
 /// From the board's border, where its brightness is no longer its own.
 inline constexpr double kBoardMargin_m = 0.003;

@@ -12,6 +12,9 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Lane = Eigen::Array4f;
+
+constexpr int kLane = 4;
 
 constexpr double kBlur_px = 0.45;        // of lens, pixel and reading between pixels
 constexpr double kStep_m = 0.0025;       // between places along the outline
@@ -170,65 +173,86 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
   }
   const Eigen::Matrix<float, kUnknowns, 1> f = x.cast<float>();
   const auto end = static_cast<float>(kPlaces * kStep_m);
-  std::array<std::array<float, 12>, kUnknowns> table{};
-  float squares = 0.0F;
-  float weights = 0.0F;
-  for (int i = 0; i < count; i += every) {
-    const Sample& sample = samples_[static_cast<std::size_t>(i)];
-    const float along = sample.at.x();
-    const float out = sample.at.y();
-    const auto edge = step_.at((out - f[kEdge] - f[kEdgeSlope] * along / end) / blur_m_);
-    float dark_share = 0.0F;
-    Eigen::Vector2f by_tip(0.0F, 0.0F);
+  constexpr std::size_t kResidual = kUnknowns;
+  std::array<std::array<Lane, kUnknowns + 1>, kUnknowns> table;
+  for (auto& row : table) row.fill(Lane::Zero());
+  Lane squares = Lane::Zero();
+  Lane weights = Lane::Zero();
+  std::array<Lane, kUnknowns + 1> j;
+  for (int i = 0; i < count; i += kLane * every) {
+    Lane along;
+    Lane out;
+    Lane value;
+    Lane there;  // the last ones are not
+    for (int k = 0; k < kLane; ++k) {
+      const int at = i + k * every;
+      const Sample& sample = samples_[static_cast<std::size_t>(std::min(at, count - 1))];
+      along[k] = sample.at.x();
+      out[k] = sample.at.y();
+      value[k] = sample.value;
+      there[k] = at < count ? 1.0F : 0.0F;
+    }
+    Lane w;
+    Lane edge_density;
+    step_.at((out - f[kEdge] - f[kEdgeSlope] * along / end) / blur_m_, w, edge_density);
+    Lane dark_share = Lane::Zero();
+    Lane by_tip_x = Lane::Zero();
+    Lane by_tip_y = Lane::Zero();
     if (shadow) {
       // The outline's place is the cone's own: where its edge is seen, its base is.
-      const Eigen::Vector2f q(along, out - f[kEdge] + radius);
-      dark_share = -1.0F;
+      const Lane q = out - f[kEdge] + radius;
+      dark_share = Lane::Constant(-1.0F);
       for (std::size_t side = 0; side < 2; ++side) {
-        const float d = q.dot(inward[side]) + radius;
-        const float way = std::clamp(q.dot(line[side]) * over_length[side], 0.0F, 1.0F);
-        const float soft = soft_end * way;
-        const float over_sigma = 1.0F / std::sqrt(soft * soft + blur_m_ * blur_m_);
-        const auto value = step_.at(d * over_sigma);
-        dark_share += value.share;
-        by_tip += (f[kDark] * value.density * over_sigma * way) * inward[side];
+        const Lane d = along * inward[side].x() + q * inward[side].y() + radius;
+        const Lane way = ((along * line[side].x() + q * line[side].y()) * over_length[side]).max(0.0F).min(1.0F);
+        const Lane soft = soft_end * way;
+        const Lane over_sigma = 1.0F / (soft * soft + blur_m_ * blur_m_).sqrt();
+        Lane share;
+        Lane density;
+        step_.at(d * over_sigma, share, density);
+        dark_share += share;
+        const Lane by_tip = f[kDark] * density * over_sigma * way;
+        by_tip_x += by_tip * inward[side].x();
+        by_tip_y += by_tip * inward[side].y();
       }
-      if (dark_share <= 0.0F) dark_share = 0.0F, by_tip.setZero();
+      const auto lit = dark_share <= 0.0F;
+      by_tip_x = lit.select(0.0F, by_tip_x);
+      by_tip_y = lit.select(0.0F, by_tip_y);
+      dark_share = dark_share.max(0.0F);
     }
-    const float board = f[kLevel] + f[kSlopeAlong] * along + f[kSlopeOut] * out - f[kDark] * dark_share;
-    const float cone = f[kCone] + f[kConeSlope] * along;
-    const float w = edge.share;
-    std::array<float, 12> j{};
-    j[kTipAlong] = w * by_tip.x();
-    j[kTipOut] = w * by_tip.y();
-    j[kDark] = shadow ? -w * dark_share : 0.0F;
+    const Lane board = f[kLevel] + f[kSlopeAlong] * along + f[kSlopeOut] * out - f[kDark] * dark_share;
+    const Lane cone = f[kCone] + f[kConeSlope] * along;
+    j[kTipAlong] = w * by_tip_x;
+    j[kTipOut] = w * by_tip_y;
+    j[kDark] = -w * dark_share;
     j[kLevel] = w;
     j[kSlopeAlong] = w * along;
     j[kSlopeOut] = w * out;
     j[kCone] = 1.0F - w;
     j[kConeSlope] = (1.0F - w) * along;
-    j[kEdge] = -(board - cone) * edge.density / blur_m_;
+    j[kEdge] = -(board - cone) * edge_density / blur_m_;
     j[kEdgeSlope] = j[kEdge] * along / end;
-    const float residual = sample.value - (cone + (board - cone) * w);
-    j[10] = residual;
-    const float relative = residual / (darker_counts || residual < 0.0F ? kScale : 2.0F * kScale);
-    const float robust = 1.0F / (1.0F + relative * relative);
+    const Lane residual = value - (cone + (board - cone) * w);
+    j[kResidual] = residual;
+    const Lane scale = (residual < 0.0F).select(Lane::Constant(kScale), darker_counts ? kScale : 2.0F * kScale);
+    const Lane relative = residual / scale;
+    const Lane robust = there / (1.0F + relative * relative);
     for (std::size_t a = 0; a < kUnknowns; ++a) {
-      const float weighted = robust * j[a];
-      for (std::size_t b = a / 4 * 4; b < 12; ++b) table[a][b] += weighted * j[b];
+      const Lane weighted = robust * j[a];
+      for (std::size_t b = a; b <= kResidual; ++b) table[a][b] += weighted * j[b];
     }
     squares += robust * residual * residual;
     weights += robust;
   }
   for (int a = 0; a < kUnknowns; ++a) {
+    const auto& row = table[static_cast<std::size_t>(a)];
     for (int b = a; b < kUnknowns; ++b) {
-      sums.H(a, b) = sums.H(b, a) =
-          static_cast<double>(table[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)]);
+      sums.H(a, b) = sums.H(b, a) = static_cast<double>(row[static_cast<std::size_t>(b)].sum());
     }
-    sums.g[a] = static_cast<double>(table[static_cast<std::size_t>(a)][10]);
+    sums.g[a] = static_cast<double>(row[kResidual].sum());
   }
-  sums.squares = static_cast<double>(squares);
-  sums.weights = static_cast<double>(weights);
+  sums.squares = static_cast<double>(squares.sum());
+  sums.weights = static_cast<double>(weights.sum());
   return sums;
 }
 

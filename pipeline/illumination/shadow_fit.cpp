@@ -12,6 +12,7 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using enum ShadowBrightness::Unknown;
 
 constexpr double kBlur_px = 0.55;         // of lens, pixel and reading between pixels
 constexpr double kStartOfLine_m = 0.003;  // nearer to the base its own contact is seen
@@ -24,7 +25,7 @@ constexpr int kLeastSparse = 24;
 constexpr double kSparseContrast = 6.0;  // grey levels; a weaker one needs all samples from the start
 constexpr double kSettled_m = 0.0015;    // a tip that moved less needs no other samples
 constexpr int kChoices = 4;              // of samples, at most
-constexpr int kMostPlaces = 14;          // along a line
+constexpr int kMostAlong = 14;           // places along a line
 constexpr double kCorrelation = 1.6;     // samples read between pixels are not independent
 constexpr double kRadiusSigma_m = 0.0003;
 constexpr double kUnknown_m = 0.5;      // sigma of a tip of which nothing is known
@@ -33,12 +34,13 @@ constexpr double kLongestStep = 0.35;   // of the shadow's length: no further th
 constexpr double kLeastVariance = 0.3;  // grey levels squared
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLevel, kSlopeX, kSlopeY };
-
 }  // namespace
 
 ShadowFit::ShadowFit(const Probe& probe, const Board& board, const ShadowParameters& parameters, double lamp_height_m)
-    : board_(board), probe_(probe), parameters_(parameters), lamp_height_m_(lamp_height_m) {}
+    : board_(board), probe_(probe), parameters_(parameters), lamp_height_m_(lamp_height_m) {
+  edges_.foot = probe_.foot_B;
+  edges_.penumbra_m = penumbra_sigma(1.0);
+}
 
 double ShadowFit::penumbra_sigma(double along) const {
   const double z = std::clamp(along, 0.0, 1.0) * probe_.p_BA.z();
@@ -56,13 +58,12 @@ double ShadowFit::reach_on_board(const Vector2d& from, const Vector2d& line, dou
   return reach;
 }
 
-int ShadowFit::choose(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
-                      const Choice& choice) {
+void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
+                       const Choice& choice) {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, choice.tip_shadow);
-  if (!outline.valid) return 0;
-  int count = 0;
+  samples_.count = 0;
+  if (!outline.valid) return;
   int place = 0;
-  for (Place& p : places_) p = Place{};
   for (std::size_t side = 0; side < 2; ++side) {
     const Vector2d line = choice.tip_shadow - outline.touch[side];
     const double length = line.norm();
@@ -73,7 +74,7 @@ int ShadowFit::choose(const LumaView& image, const BoardView& view, const std::a
     const auto middle = view.derivative({middle_B.x(), middle_B.y(), 0.0});
     if (!middle.in_front) continue;
     const double line_px = (middle.by_point.leftCols<2>() * line).norm() * (reach - begin);
-    int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostPlaces);
+    int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostAlong);
     if (choice.sparse) places = std::max(5, places / 2);
     const int samples_across = choice.sparse ? kAcross / 2 + 1 : kAcross;
     for (int i = 0; i < places; ++i) {
@@ -82,136 +83,38 @@ int ShadowFit::choose(const LumaView& image, const BoardView& view, const std::a
       const auto d = view.derivative({centre.x(), centre.y(), 0.0});
       if (!d.in_front) continue;
       const Vector2d across = d.by_point.leftCols<2>() * outline.inward[side];
-      m_per_px_ = 1.0 / across.norm();
-      const double half = std::max(2.2 * m_per_px_, 2.2 * penumbra_sigma(along)) + choice.slack_m;
-      const int before = count;
-      for (int k = 0; k < samples_across && count < kMostSamples; ++k) {
+      const double m_per_px = 1.0 / across.norm();
+      edges_.blur_m = kBlur_px * m_per_px;
+      const double half = std::max(2.2 * m_per_px, 2.2 * penumbra_sigma(along)) + choice.slack_m;
+      const int before = samples_.count;
+      for (int k = 0; k < samples_across && samples_.count < ShadowSamples::kMost; ++k) {
         const double t = half * (2.0 * k / (samples_across - 1) - 1.0);
         const Vector2d p_B = centre + t * outline.inward[side];
         const Vector2d pixel = d.at + t * across;
         if (!image.holds(pixel.x(), pixel.y(), 1.0) || !is_seen(board_, behind, p_B)) continue;
-        Sample& sample = samples_[static_cast<std::size_t>(count++)];
-        sample.from_foot = (p_B - probe_.foot_B).cast<float>();
-        sample.value = image.at(pixel.x(), pixel.y());
-        sample.place = place;
+        samples_.add((p_B - probe_.foot_B).cast<float>(), image.at(pixel.x(), pixel.y()), place);
       }
-      if (count - before < (choice.with_tip || choice.sparse ? 3 : kLeastAcross)) {
-        count = before;
+      if (samples_.count - before < (choice.with_tip || choice.sparse ? 3 : kLeastAcross)) {
+        samples_.count = before;
         continue;
       }
-      places_[static_cast<std::size_t>(place++)].side = static_cast<int>(side);
+      side_of_[static_cast<std::size_t>(place++)] = side;
     }
   }
-  return count;
 }
 
-// \return 0 where there are too few.
-int ShadowFit::choose_enough(const LumaView& image, const BoardView& view,
-                             const std::array<Outline, kMostProbes>& behind, Choice choice) {
-  int count = choose(image, view, behind, choice);
-  if (choice.sparse && count < kLeastSparse) {
+bool ShadowFit::choose_enough(const LumaView& image, const BoardView& view,
+                              const std::array<Outline, kMostProbes>& behind, Choice choice) {
+  choose(image, view, behind, choice);
+  if (choice.sparse && samples_.count < kLeastSparse) {
     choice.sparse = false;
-    count = choose(image, view, behind, choice);
+    choose(image, view, behind, choice);
   }
-  const int least = choice.with_tip ? kLeastSamples / 2 : choice.sparse ? kLeastSparse : kLeastSamples;
-  return count < least ? 0 : count;
-}
-
-// The normal equations of the samples alone.
-bool ShadowFit::sum_up(const Unknowns& x, int count, Sums& sums) {
-  const Vector2d tip = x.head<2>();
-  const Vector2d foot = x.segment<2>(kFootX);
-  const Outline outline = outline_of(foot, x[kRadius], tip);
-  if (!outline.valid) return false;
-  std::array<Eigen::Vector2f, 2> inward;
-  std::array<Eigen::Vector2f, 2> along;
-  std::array<float, 2> over_length{};
-  for (std::size_t side = 0; side < 2; ++side) {
-    const Vector2d line = tip - outline.touch[side];
-    const double length = line.norm();
-    inward[side] = outline.inward[side].cast<float>();
-    along[side] = (line / length).cast<float>();
-    over_length[side] = static_cast<float>(1.0 / length);
-  }
-  const Eigen::Vector2f off_foot = (foot - probe_.foot_B).cast<float>();
-  const auto radius = static_cast<float>(x[kRadius]);
-  const auto dark = static_cast<float>(x[kDark]);
-  const auto level = static_cast<float>(x[kLevel]);
-  const Eigen::Vector2f slope = x.segment<2>(kSlopeX).cast<float>();
-  const float blur = static_cast<float>(kBlur_px * m_per_px_);
-  const auto soft_end = static_cast<float>(penumbra_sigma(1.0));
-  const float scale = std::max(3.0F, 0.12F * std::abs(dark));
-  // Sums over samples in plain arrays: 9 unknowns and the residual, padded to 12.
-  std::array<std::array<float, 12>, kUnknowns> table{};
-  float squares = 0.0F;
-  float weights = 0.0F;
-  for (Place& p : places_) p.h = p.hh = p.hv = p.v = 0.0F, p.count = 0;
-  for (int i = 0; i < count; ++i) {
-    const Sample& sample = samples_[static_cast<std::size_t>(i)];
-    const Eigen::Vector2f q = sample.from_foot - off_foot;
-    float hidden = -1.0F;
-    std::array<float, 2> density{};
-    std::array<float, 2> share_of_way{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      const float d = q.dot(inward[side]) + radius;
-      const float way = std::clamp(q.dot(along[side]) * over_length[side], 0.0F, 1.0F);
-      const float soft = soft_end * way;
-      const float sigma = std::sqrt(soft * soft + blur * blur);
-      const auto value = step_.at(d / sigma);
-      hidden += value.share;
-      density[side] = value.density / sigma;
-      share_of_way[side] = way;
-    }
-    if (hidden <= 0.0F) hidden = 0.0F, density = {};
-    std::array<float, 12> j{};
-    for (std::size_t side = 0; side < 2; ++side) {
-      const float by_d = -dark * density[side];
-      const float at_tip = by_d * share_of_way[side];
-      const float at_foot = by_d - at_tip;
-      j[kTipX] -= at_tip * inward[side].x();
-      j[kTipY] -= at_tip * inward[side].y();
-      j[kFootX] -= at_foot * inward[side].x();
-      j[kFootY] -= at_foot * inward[side].y();
-      j[kRadius] += at_foot;
-    }
-    j[kDark] = -hidden;
-    j[kLevel] = 1.0F;
-    j[kSlopeX] = sample.from_foot.x();
-    j[kSlopeY] = sample.from_foot.y();
-    const float plain = level + slope.dot(sample.from_foot);
-    const float residual = sample.value - (plain - dark * hidden);
-    j[kUnknowns] = residual;
-    const float relative = residual / scale;
-    const float robust = 1.0F / (1.0F + relative * relative);
-    for (std::size_t a = 0; a < kUnknowns; ++a) {
-      const float w = robust * j[a];
-      for (std::size_t b = a / 4 * 4; b < 12; ++b) table[a][b] += w * j[b];
-    }
-    squares += robust * residual * residual;
-    weights += robust;
-    Place& place = places_[static_cast<std::size_t>(sample.place)];
-    const float missing = plain - sample.value;
-    place.h += hidden;
-    place.hh += hidden * hidden;
-    place.hv += hidden * missing;
-    place.v += missing;
-    ++place.count;
-  }
-  sums.variance =
-      std::max(kLeastVariance, static_cast<double>(squares) / std::max(1.0, static_cast<double>(weights) - kUnknowns));
-  const double noise = sums.variance * kCorrelation;
-  for (int a = 0; a < kUnknowns; ++a) {
-    const auto& row = table[static_cast<std::size_t>(a)];
-    for (int b = a; b < kUnknowns; ++b) {
-      sums.H(a, b) = sums.H(b, a) = static_cast<double>(row[static_cast<std::size_t>(b)]) / noise;
-    }
-    sums.g[a] = static_cast<double>(row[kUnknowns]) / noise;
-  }
-  return true;
+  return samples_.count >= (choice.with_tip ? kLeastSamples / 2 : choice.sparse ? kLeastSparse : kLeastSamples);
 }
 
 // What is known beside the samples: the base, and very weakly what they may not tell: with one line the place along it.
-void ShadowFit::add_known(const Unknowns& x, const ShadowStart& start, Sums& sums) const {
+void ShadowFit::add_known(const ShadowUnknowns& x, const ShadowStart& start, ShadowSums& sums) const {
   const auto add = [&](int unknown, double sigma2, double off) {
     sums.H(unknown, unknown) += 1.0 / sigma2;
     sums.g[unknown] += off / sigma2;
@@ -229,7 +132,8 @@ void ShadowFit::add_known(const Unknowns& x, const ShadowStart& start, Sums& sum
 
 // Gauss-Newton: few samples until the tip stays where it is, then all of them.
 bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
-                       const ShadowStart& start, Unknowns& x, Sums& sums) {
+                       const ShadowStart& start, Fitted& fitted) {
+  ShadowUnknowns& x = fitted.x;
   const bool with_tip = start.known_m > 0.0;
   double moved_m = 1.0;
   bool settled = false;
@@ -240,15 +144,20 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
     choice.slack_m = round == 0 ? std::min(0.004, 0.08 * (choice.tip_shadow - probe_.foot_B).norm()) : 0.001;
     choice.with_tip = with_tip;
     choice.sparse = !settled && !with_tip && start.contrast > kSparseContrast;
-    const int count = choose_enough(image, view, behind, choice);
-    if (count == 0) return false;
+    if (!choose_enough(image, view, behind, choice)) return false;
     const int steps = round == 0 ? 3 : 2;
     for (int step = 0; step < steps; ++step) {
-      if (!sum_up(x, count, sums)) return false;
+      const ShadowBrightness model(x, edges_, step_);
+      if (!model.valid()) return false;
+      ShadowSums sums = model.sum_up(samples_);
+      fitted.variance = std::max(kLeastVariance, sums.squares / std::max(1.0, sums.weights - kShadowUnknowns));
+      sums.H /= fitted.variance * kCorrelation;
+      sums.g /= fitted.variance * kCorrelation;
       add_known(x, start, sums);
-      const Eigen::LLT<Normal> solver(sums.H);
+      fitted.information = sums.H;
+      const Eigen::LLT<ShadowNormal> solver(sums.H);
       if (solver.info() != Eigen::Success) return false;
-      Unknowns change = solver.solve(sums.g);
+      ShadowUnknowns change = solver.solve(sums.g);
       const double most = kLongestStep * (x.head<2>() - x.segment<2>(kFootX)).norm();
       const double move = change.head<2>().norm();
       if (move > most) change *= most / move;
@@ -260,7 +169,7 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
   return true;
 }
 
-bool ShadowFit::may_be_shadow(const Unknowns& x) const {
+bool ShadowFit::may_be_shadow(const ShadowUnknowns& x) const {
   const double distance = (x.head<2>() - probe_.foot_B).norm();
   const double flat = (x.head<2>() - probe_.p_BA.head<2>()).norm();
   return distance >= 1.15 * probe_.radius_m &&
@@ -269,18 +178,33 @@ bool ShadowFit::may_be_shadow(const Unknowns& x) const {
 }
 
 // Do the places along the lines show it, each by itself?
-bool ShadowFit::is_shown(ProbeShadow& shadow) const {
+bool ShadowFit::is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const {
+  // Of each place: the line through what is missing over what is hidden.
+  struct Place {
+    float n = 0.0F, h = 0.0F, hh = 0.0F, v = 0.0F, hv = 0.0F;
+  };
+  std::array<Place, kMostPlaces> places{};
+  const ShadowBrightness model(x, edges_, step_);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
+    const auto brightness = model.at({samples_.x[i], samples_.y[i]});
+    const float missing = brightness.plain - samples_.value[i];
+    Place& place = places[static_cast<std::size_t>(samples_.place[i])];
+    place.n += 1.0F;
+    place.h += brightness.hidden;
+    place.hh += brightness.hidden * brightness.hidden;
+    place.v += missing;
+    place.hv += brightness.hidden * missing;
+  }
   std::array<int, 2> shown{};
   std::array<int, 2> asked{};
-  for (const Place& place : places_) {
-    if (place.count == 0) continue;
-    const float n = static_cast<float>(place.count);
-    const float spread = place.hh - place.h * place.h / n;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& place = places[i];
+    if (place.n == 0.0F) continue;
+    const float spread = place.hh - place.h * place.h / place.n;
     if (spread < 0.25F) continue;
-    const double contrast = static_cast<double>((place.hv - place.h * place.v / n) / spread);
-    const auto side = static_cast<std::size_t>(place.side);
-    ++asked[side];
-    if (contrast > 0.5 * shadow.contrast && contrast < 1.6 * shadow.contrast) ++shown[side];
+    const double contrast = static_cast<double>((place.hv - place.h * place.v / place.n) / spread);
+    ++asked[side_of_[i]];
+    if (contrast > 0.5 * shadow.contrast && contrast < 1.6 * shadow.contrast) ++shown[side_of_[i]];
   }
   shadow.lines = 0;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -296,21 +220,21 @@ bool ShadowFit::is_shown(ProbeShadow& shadow) const {
 bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
                     const ShadowStart& start, ProbeShadow& shadow) {
   const bool with_tip = start.known_m > 0.0;
-  Unknowns x;
-  x << start.tip_shadow, probe_.foot_B, probe_.radius_m, start.contrast, start.level, 0.0, 0.0;
-  Sums sums;
-  if (!settle(image, view, behind, start, x, sums) || !may_be_shadow(x)) return false;
-  const Normal covariance = sums.H.inverse();
+  Fitted fitted;
+  fitted.x << start.tip_shadow, probe_.foot_B, probe_.radius_m, start.contrast, start.level, 0.0, 0.0;
+  if (!settle(image, view, behind, start, fitted) || !may_be_shadow(fitted.x)) return false;
+  const ShadowUnknowns& x = fitted.x;
+  const ShadowNormal covariance = fitted.information.inverse();
   if (!with_tip && x[kDark] < 6.0 * std::sqrt(covariance(kDark, kDark))) return false;
   const Vector3d p_BS(x[kTipX], x[kTipY], 0.0);
   const auto d = view.derivative(p_BS);
   if (!d.in_front) return false;
   shadow.contrast = x[kDark];
-  shadow.rms = std::sqrt(sums.variance);
+  shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
   shadow.covariance = covariance.topLeftCorner<2, 2>();
   shadow.by_pose = -d.by_point.leftCols<2>().inverse() * view.by_pose(d, p_BS);
-  if (!with_tip) return is_shown(shadow);
+  if (!with_tip) return is_shown(x, shadow);
   shadow.lines = 2;
   shadow.support = 1.0;
   return shadow.rms < std::max(1.8, 0.1 * shadow.contrast) &&

@@ -8,6 +8,7 @@
 #include "pipeline/illumination/board.h"
 #include "pipeline/illumination/luma_view.h"
 #include "pipeline/illumination/probe_shadow.h"
+#include "pipeline/illumination/shadow_brightness.h"
 #include "pipeline/illumination/soft_step.h"
 
 namespace cgsr::illumination {
@@ -36,45 +37,29 @@ class ShadowFit {
            const ShadowStart& start, ProbeShadow& shadow);
 
  private:
-  static constexpr int kMostSamples = 320;
-  static constexpr int kUnknowns = 9;
-  using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
-  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
+  static constexpr std::size_t kMostPlaces = 28;  // along both lines
 
-  struct Sample {
-    Eigen::Vector2f from_foot;
-    float value;
-    int place;  // along the lines, both lines counted on
-  };
-  // What the samples across a line at one place say by themselves.
-  struct Place {
-    int side = 0;
-    float hh = 0.0F, h = 0.0F, hv = 0.0F, v = 0.0F;
-    int count = 0;
-  };
   struct Choice {
     Eigen::Vector2d tip_shadow;
     double slack_m;  // beyond the soft edge
     bool with_tip;
     bool sparse;
   };
-  struct Sums {
-    Normal H = Normal::Zero();
-    Unknowns g = Unknowns::Zero();
+  struct Fitted {
+    ShadowUnknowns x;
+    ShadowNormal information;
     double variance = 0.0;  // of a sample
   };
 
-  int choose(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
-             const Choice& choice);
-  int choose_enough(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
-                    Choice choice);
-  [[nodiscard]] bool sum_up(const Unknowns& x, int count, Sums& sums);
-  void add_known(const Unknowns& x, const ShadowStart& start, Sums& sums) const;
+  void choose(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
+              const Choice& choice);
+  [[nodiscard]] bool choose_enough(const LumaView& image, const BoardView& view,
+                                   const std::array<Outline, kMostProbes>& behind, Choice choice);
+  void add_known(const ShadowUnknowns& x, const ShadowStart& start, ShadowSums& sums) const;
   [[nodiscard]] bool settle(const LumaView& image, const BoardView& view,
-                            const std::array<Outline, kMostProbes>& behind, const ShadowStart& start, Unknowns& x,
-                            Sums& sums);
-  [[nodiscard]] bool may_be_shadow(const Unknowns& x) const;
-  [[nodiscard]] bool is_shown(ProbeShadow& shadow) const;
+                            const std::array<Outline, kMostProbes>& behind, const ShadowStart& start, Fitted& fitted);
+  [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x) const;
+  [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
   [[nodiscard]] double penumbra_sigma(double along) const;
 
@@ -83,9 +68,9 @@ class ShadowFit {
   ShadowParameters parameters_;
   double lamp_height_m_;
   SoftStep step_;
-  std::array<Sample, kMostSamples> samples_{};
-  std::array<Place, 64> places_{};
-  double m_per_px_ = 1e-3;
+  ShadowSamples samples_;
+  std::array<std::size_t, kMostPlaces> side_of_{};  // which line a place lies along
+  ShadowEdges edges_;
 };
 
 }  // namespace cgsr::illumination

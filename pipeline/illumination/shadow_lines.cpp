@@ -66,8 +66,7 @@ ShadowFinder::ShadowFinder(const Board& board, int probe, const ShadowParameters
 float ShadowFinder::hidden_share(const Vector2d& from_foot, const Outline& outline, double blur_m) const {
   if (!outline.valid) return 0.0F;
   // Both lines' inner sides overlap behind the base as well: only from the points on where they begin.
-  const Vector2d backward = outline.inward[0] + outline.inward[1];
-  if (from_foot.dot(backward) > -0.5 * probe_.radius_m * backward.squaredNorm()) return 0.0F;
+  if (from_foot.dot(outline.backward) > -0.5 * probe_.radius_m * outline.backward.squaredNorm()) return 0.0F;
   float share = -1.0F;
   for (std::size_t side = 0; side < 2; ++side) {
     const double d = from_foot.dot(outline.inward[side]) + probe_.radius_m;
@@ -96,10 +95,11 @@ void ShadowFinder::take_plane_away() {
   // The board's brightness is nearly a plane; places darker than it count less and less.
   Vector3d plane(0.0, 0.0, 0.0);
   double soft = 40.0;
-  for (int round = 0; round < 4; ++round) {
+  constexpr int kRounds = 4;
+  for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3d H = Eigen::Matrix3d::Identity() * 1e-3;
     Vector3d g = Vector3d::Zero();
-    for (std::size_t r = 0; r < kRays; ++r) {
+    for (std::size_t r = 0; r < kRays; r += round + 1 < kRounds ? 2 : 1) {
       for (std::size_t k = 0; k < kRings; ++k) {
         if (valid_[r][k] == 0.0F) continue;
         const Vector2d q = grid_[r * kRings + k] / probe_.radius_m;
@@ -216,9 +216,9 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
           probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
     }
   };
-  const int step = everywhere ? 1 : 3;
-  for (int ray = 0; ray < kRays; ++ray) {
-    if (may_be(ray)) compare(ray, everywhere ? 0 : 1, kLengths, step);
+  // Every second ray and every third length, then what lies about the best of them.
+  for (int ray = 0; ray < kRays; ray += everywhere ? 1 : 2) {
+    if (may_be(ray)) compare(ray, everywhere ? 0 : 1, kLengths, everywhere ? 1 : 3);
   }
   if (everywhere || best.ray < 0) return best;
   const int ray = best.ray;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Core>
+
 namespace cgsr::illumination {
 
 /// The normal distribution's integral and its density, out of a table: how the brightness goes from shadow to light across a soft edge. (A
@@ -27,6 +29,17 @@ class SoftStep {
     const float low = table_[static_cast<std::size_t>(i)];
     const float rise = table_[static_cast<std::size_t>(i) + 1] - low;
     return {low + (place - static_cast<float>(i)) * rise, rise * kPerUnit};
+  }
+  /// The same for four at once.
+  void at(const Eigen::Array4f& x, Eigen::Array4f& share, Eigen::Array4f& density) const {
+    const Eigen::Array4f place = (x * kPerUnit + kZero).max(0.0F).min(static_cast<float>(kEntries - 2));
+    for (int k = 0; k < 4; ++k) {
+      const int i = static_cast<int>(place[k]);
+      const float low = table_[static_cast<std::size_t>(i)];
+      const float rise = table_[static_cast<std::size_t>(i) + 1] - low;
+      share[k] = low + (place[k] - static_cast<float>(i)) * rise;
+      density[k] = rise * kPerUnit;
+    }
   }
 
  private:

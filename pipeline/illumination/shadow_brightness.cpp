@@ -1,0 +1,128 @@
+#include "pipeline/illumination/shadow_brightness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/illumination/board.h"
+
+namespace cgsr::illumination {
+namespace {
+
+using Lane = Eigen::Array4f;
+constexpr int kLane = 4;
+
+// Residuals beyond it count less and less: grey levels, and of the contrast.
+constexpr float kLeastScale = 3.0F;
+constexpr float kScale = 0.12F;
+
+}  // namespace
+
+ShadowBrightness::ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& edges, const SoftStep& step)
+    : step_(&step) {
+  const Eigen::Vector2d tip = x.segment<2>(kTipX);
+  const Eigen::Vector2d foot = x.segment<2>(kFootX);
+  const Outline outline = outline_of(foot, x[kRadius], tip);
+  valid_ = outline.valid;
+  if (!valid_) return;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Eigen::Vector2d line = tip - outline.touch[side];
+    const Eigen::Vector2f along = (line / line.squaredNorm()).cast<float>();
+    const Eigen::Vector2f inward = outline.inward[side].cast<float>();
+    line_[side] = {inward.x(), inward.y(), along.x(), along.y()};
+  }
+  const Eigen::Vector2f off = (foot - edges.foot).cast<float>();
+  off_x_ = off.x();
+  off_y_ = off.y();
+  radius_ = static_cast<float>(x[kRadius]);
+  dark_ = static_cast<float>(x[kDark]);
+  level_ = static_cast<float>(x[kLevel]);
+  slope_x_ = static_cast<float>(x[kSlopeX]);
+  slope_y_ = static_cast<float>(x[kSlopeY]);
+  blur_ = static_cast<float>(edges.blur_m);
+  penumbra_ = static_cast<float>(edges.penumbra_m);
+}
+
+ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) const {
+  const float qx = from_foot.x() - off_x_;
+  const float qy = from_foot.y() - off_y_;
+  float hidden = -1.0F;
+  for (const Line& line : line_) {
+    const float d = qx * line.inward_x + qy * line.inward_y + radius_;
+    const float soft = penumbra_ * std::clamp(qx * line.along_x + qy * line.along_y, 0.0F, 1.0F);
+    hidden += step_->at(d / std::sqrt(soft * soft + blur_ * blur_)).share;
+  }
+  return {level_ + slope_x_ * from_foot.x() + slope_y_ * from_foot.y(), std::max(0.0F, hidden)};
+}
+
+ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
+  constexpr std::size_t kResidual = kShadowUnknowns;
+  const float scale = std::max(kLeastScale, kScale * std::abs(dark_));
+  std::array<std::array<Lane, kShadowUnknowns + 1>, kShadowUnknowns> table;
+  for (auto& row : table) row.fill(Lane::Zero());
+  Lane squares = Lane::Zero();
+  Lane weights = Lane::Zero();
+  std::array<Lane, kShadowUnknowns + 1> j;
+  j[kLevel] = Lane::Ones();
+  for (int i = 0; i < samples.count; i += kLane) {
+    const Lane x = Eigen::Map<const Lane, Eigen::Aligned16>(samples.x.data() + i);
+    const Lane y = Eigen::Map<const Lane, Eigen::Aligned16>(samples.y.data() + i);
+    const Lane value = Eigen::Map<const Lane, Eigen::Aligned16>(samples.value.data() + i);
+    const Lane qx = x - off_x_;
+    const Lane qy = y - off_y_;
+    Lane hidden = Lane::Constant(-1.0F);
+    std::array<Lane, 2> by_tip;
+    std::array<Lane, 2> by_foot;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Line& line = line_[side];
+      const Lane d = qx * line.inward_x + qy * line.inward_y + radius_;
+      const Lane way = (qx * line.along_x + qy * line.along_y).max(0.0F).min(1.0F);
+      const Lane soft = penumbra_ * way;
+      const Lane over_sigma = 1.0F / (soft * soft + blur_ * blur_).sqrt();
+      Lane share;
+      Lane density;
+      step_->at(d * over_sigma, share, density);
+      hidden += share;
+      const Lane by_d = -dark_ * density * over_sigma;
+      by_tip[side] = by_d * way;
+      by_foot[side] = by_d - by_tip[side];
+    }
+    const auto lit = hidden <= 0.0F;
+    hidden = lit.select(0.0F, hidden);
+    for (std::size_t side = 0; side < 2; ++side) {
+      by_tip[side] = lit.select(0.0F, by_tip[side]);
+      by_foot[side] = lit.select(0.0F, by_foot[side]);
+    }
+    j[kTipX] = -by_tip[0] * line_[0].inward_x - by_tip[1] * line_[1].inward_x;
+    j[kTipY] = -by_tip[0] * line_[0].inward_y - by_tip[1] * line_[1].inward_y;
+    j[kFootX] = -by_foot[0] * line_[0].inward_x - by_foot[1] * line_[1].inward_x;
+    j[kFootY] = -by_foot[0] * line_[0].inward_y - by_foot[1] * line_[1].inward_y;
+    j[kRadius] = by_foot[0] + by_foot[1];
+    j[kDark] = -hidden;
+    j[kSlopeX] = x;
+    j[kSlopeY] = y;
+    const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * hidden);
+    j[kResidual] = residual;
+    const Lane relative = residual * (1.0F / scale);
+    Lane robust = 1.0F / (1.0F + relative * relative);
+    for (int k = samples.count - i; k < kLane; ++k) robust[k] = 0.0F;
+    for (std::size_t a = 0; a < kShadowUnknowns; ++a) {
+      const Lane weighted = robust * j[a];
+      for (std::size_t b = a; b <= kResidual; ++b) table[a][b] += weighted * j[b];
+    }
+    squares += robust * residual * residual;
+    weights += robust;
+  }
+  ShadowSums sums;
+  for (int a = 0; a < kShadowUnknowns; ++a) {
+    const auto& row = table[static_cast<std::size_t>(a)];
+    for (int b = a; b < kShadowUnknowns; ++b) {
+      sums.H(a, b) = sums.H(b, a) = static_cast<double>(row[static_cast<std::size_t>(b)].sum());
+    }
+    sums.g[a] = static_cast<double>(row[kResidual].sum());
+  }
+  sums.squares = static_cast<double>(squares.sum());
+  sums.weights = static_cast<double>(weights.sum());
+  return sums;
+}
+
+}  // namespace cgsr::illumination

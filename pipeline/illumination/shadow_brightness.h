@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+#include "pipeline/illumination/soft_step.h"
+
+namespace cgsr::illumination {
+
+inline constexpr int kShadowUnknowns = 9;  ///< ShadowBrightness::Unknown
+using ShadowUnknowns = Eigen::Matrix<double, kShadowUnknowns, 1>;
+using ShadowNormal = Eigen::Matrix<double, kShadowUnknowns, kShadowUnknowns>;
+
+/// Places on the board with the brightness that was seen there, four to a lane: x, y from the measured foot.
+struct ShadowSamples {
+  static constexpr int kMost = 320;
+  alignas(16) std::array<float, kMost> x{};
+  alignas(16) std::array<float, kMost> y{};
+  alignas(16) std::array<float, kMost> value{};
+  std::array<int, kMost> place{};  ///< along the lines, both lines counted on
+  int count = 0;
+
+  void add(const Eigen::Vector2f& from_foot, float level, int at) {
+    const auto i = static_cast<std::size_t>(count++);
+    x[i] = from_foot.x();
+    y[i] = from_foot.y();
+    value[i] = level;
+    place[i] = at;
+  }
+};
+
+/// How soft the shadow's edges are.
+struct ShadowEdges {
+  Eigen::Vector2d foot = Eigen::Vector2d::Zero();  ///< as measured: what the samples count from.
+  double blur_m = 0.0005;                          ///< of the image, on the board.
+  double penumbra_m = 0.0;  ///< where the tip's shadow falls; none at the base. Both are standard deviations.
+};
+
+/// The normal equations of Gauss and Newton, robust weights counted.
+struct ShadowSums {
+  ShadowNormal H = ShadowNormal::Zero();
+  ShadowUnknowns g = ShadowUnknowns::Zero();
+  double squares = 0.0;
+  double weights = 0.0;
+};
+
+/// The brightness of the board about a probe, with the shadow that nine unknowns describe: both lines are tangents from the shadow of the tip to the base, and the brightness between them is
+/// less by the contrast.
+class ShadowBrightness {
+ public:
+  /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about
+  /// the measured foot. Metres on the board, grey levels.
+  enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLevel, kSlopeX, kSlopeY };
+
+  /// \param x  valid() is false where the shadow of the tip falls on the base.
+  ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& edges, const SoftStep& step);
+
+  [[nodiscard]] bool valid() const { return valid_; }
+
+  /// Sums over all samples. Allocates nothing.
+  [[nodiscard]] ShadowSums sum_up(const ShadowSamples& samples) const;
+
+  struct Value {
+    float plain;   ///< without the shadow.
+    float hidden;  ///< how much of the lamp is, 0..1.
+  };
+  [[nodiscard]] Value at(const Eigen::Vector2f& from_foot) const;
+
+ private:
+  // A line, from the base to the tip's shadow.
+  struct Line {
+    float inward_x = 0.0F, inward_y = 0.0F;
+    float along_x = 0.0F, along_y = 0.0F;  // over its length
+  };
+
+  const SoftStep* step_;
+  std::array<Line, 2> line_{};
+  float off_x_ = 0.0F, off_y_ = 0.0F;  // of the foot from where it was measured
+  float radius_ = 0.0F;
+  float dark_ = 0.0F;
+  float level_ = 0.0F;
+  float slope_x_ = 0.0F, slope_y_ = 0.0F;
+  float blur_ = 0.0F;
+  float penumbra_ = 0.0F;
+  bool valid_ = false;
+};
+
+}  // namespace cgsr::illumination
