@@ -10,7 +10,7 @@ endfunction()
 
 # cgsr_kernels(sources…): loops over arrays that the compiler may vectorise in the release; everything else stays at -O2.
 function(cgsr_kernels)
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>")
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS "$<$<CONFIG:RelWithDebInfo>:-O3>" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # cgsr_test(NAME sources… DEPENDS targets… [LABEL …]): one test program per folder, each TEST() a ctest of its own. LABEL: unit (default), sim,

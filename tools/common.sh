@@ -36,7 +36,7 @@ build() {
   start=$SECONDS
   if [ ! -f "$root/build/$preset/build.ninja" ]; then
     say "configuring build/$preset"
-    cmake -S "$root" --preset "$preset" >"$root/build-$preset.log" 2>&1 ||
+    cmake -S "$root" --preset "$preset" ${CI:+-DCGSR_PRECOMPILE=ON} >"$root/build-$preset.log" 2>&1 ||
       { cat "$root/build-$preset.log" >&2; rm -f "$root/build-$preset.log"; die "cmake failed"; }
     rm -f "$root/build-$preset.log"
   fi

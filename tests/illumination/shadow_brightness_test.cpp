@@ -1,0 +1,99 @@
+#include "pipeline/illumination/shadow_brightness.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/illumination/board.h"
+
+namespace cgsr::illumination {
+namespace {
+
+using Eigen::Vector2d;
+using U = ShadowBrightness;
+
+const ShadowEdges kEdges{{0.01, -0.2}, 0.0006, 0.0012};
+
+/// The model as it is written down, a sample at a time and with the integral itself instead of a table.
+double plainly(const ShadowUnknowns& x, const Vector2d& from_foot) {
+  const Vector2d tip = x.segment<2>(U::kTipX);
+  const Vector2d foot = x.segment<2>(U::kFootX);
+  const Outline outline = outline_of(foot, x[U::kRadius], tip);
+  const Vector2d q = kEdges.foot + from_foot - foot;
+  double hidden = -1.0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Vector2d line = tip - outline.touch[side];
+    const double d = q.dot(outline.inward[side]) + x[U::kRadius];
+    const double soft = kEdges.penumbra_m * std::clamp(q.dot(line) / line.squaredNorm(), 0.0, 1.0);
+    hidden += 0.5 * std::erfc(-d / std::hypot(soft, kEdges.blur_m) / std::sqrt(2.0));
+  }
+  return x[U::kLevel] + x.segment<2>(U::kSlopeX).dot(from_foot) - x[U::kDark] * std::max(0.0, hidden);
+}
+
+ShadowSums plainly(const ShadowUnknowns& x, const ShadowSamples& samples) {
+  ShadowSums sums;
+  const double scale = std::max(3.0, 0.12 * x[U::kDark]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
+    const Vector2d at(static_cast<double>(samples.x[i]), static_cast<double>(samples.y[i]));
+    ShadowUnknowns J;
+    for (int k = 0; k < kShadowUnknowns; ++k) {
+      const double step = k <= U::kRadius ? 1e-7 : 1e-3;
+      ShadowUnknowns more = x;
+      ShadowUnknowns less = x;
+      more[k] += step;
+      less[k] -= step;
+      J[k] = (plainly(more, at) - plainly(less, at)) / (2.0 * step);
+    }
+    const double residual = static_cast<double>(samples.value[i]) - plainly(x, at);
+    const double weight = 1.0 / (1.0 + residual * residual / (scale * scale));
+    sums.H += weight * J * J.transpose();
+    sums.g += weight * residual * J;
+    sums.squares += weight * residual * residual;
+    sums.weights += weight;
+  }
+  return sums;
+}
+
+TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  const SoftStep step;
+  for (int trial = 0; trial < 30; ++trial) {
+    ShadowUnknowns x;
+    const double way = 3.1 * unit(random);
+    const Vector2d tip = kEdges.foot + (0.07 + 0.03 * unit(random)) * Vector2d(std::cos(way), std::sin(way));
+    x << tip, kEdges.foot + Vector2d(0.0005, -0.0003), 0.02, 30.0 + 20.0 * unit(random), 150.0, 40.0, -60.0;
+    ShadowSamples samples;
+    const int count = 97 + trial % 4;  // not whole lanes alone
+    while (samples.count < count) {
+      const Vector2d at =
+          0.5 * (1.0 + unit(random)) * (tip - kEdges.foot) + 0.02 * Vector2d(unit(random), unit(random));
+      samples.add(at.cast<float>(), static_cast<float>(plainly(x, at) + 4.0 * unit(random)), 0);
+    }
+    const ShadowBrightness model(x, kEdges, step);
+    ASSERT_TRUE(model.valid());
+    const ShadowSums fast = model.sum_up(samples);
+    const ShadowSums plain = plainly(x, samples);
+    // The table's density has steps, and how the softness itself changes with the tip is left out: some per cent of what could be.
+    constexpr double kShare = 0.06;
+    for (int a = 0; a < kShadowUnknowns; ++a) {
+      for (int b = 0; b < kShadowUnknowns; ++b) {
+        EXPECT_NEAR(fast.H(a, b), plain.H(a, b), kShare * std::sqrt(plain.H(a, a) * plain.H(b, b)))
+            << trial << ' ' << a << ' ' << b;
+      }
+      EXPECT_NEAR(fast.g[a], plain.g[a], kShare * std::sqrt(plain.H(a, a) * plain.squares)) << trial << ' ' << a;
+    }
+    EXPECT_NEAR(fast.squares, plain.squares, 0.01 * plain.squares);
+    EXPECT_NEAR(fast.weights, plain.weights, 0.01 * plain.weights);
+  }
+}
+
+TEST(ShadowBrightness, ATipOnTheBaseThrowsNoShadow) {
+  ShadowUnknowns x;
+  x << kEdges.foot + Vector2d(0.01, 0.0), kEdges.foot, 0.02, 30.0, 150.0, 0.0, 0.0;
+  EXPECT_FALSE(ShadowBrightness(x, kEdges, SoftStep()).valid());
+}
+
+}  // namespace
+}  // namespace cgsr::illumination
