@@ -33,6 +33,7 @@ int run_localize(const LocalizeOptions& options) {
     const nlohmann::ordered_json json{{"images", run->images()},
                                       {"corrected", run->corrected()},
                                       {"edges", run->map().edges.size()},
+                                      {"units_most", run->units_most()},
                                       {"config_sha256", hash}};
     if (auto written = write_file(options.json, json.dump(1) + "\n"); !written) return report(written.error());
   }
@@ -67,6 +68,13 @@ void add_localize_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"glcorrect", "stronger", "paper"}));
   command->add_option("--config", options->config,
                       "a file as config/localization/floor.toml; without it six free numbers");
+  command
+      ->add_option("--units", options->units,
+                   "with --pose: most looks at the map and rounds of matching for an image after the first; a search "
+                   "goes on over the images that follow; 0: all it asks for")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str()
+      ->excludes(priors);
   command->add_option("--csv", options->csv, "write a row for each image");
   command->add_option("--video", options->video, "write a video with the map's edges over the images");
   command->add_option("--json", options->json, "write the summary for machines");

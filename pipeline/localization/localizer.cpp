@@ -25,9 +25,18 @@ constexpr double kNearest = 1.8;        // sigmas
 constexpr double kNearRival_px = 4.0;   // a pose that is further off and as good leaves the answer open
 constexpr float kNearRadius = 0.6F;     // of the first start's
 
+// Shorter pieces are not matched (expected.cpp); a little of them may be longer from the pose that is found.
+constexpr double kLeastPiece_px = 5.0;
+// Near ones that hide what is behind them: a budget of about 4 million instructions where a map fills the view with things.
+constexpr int kMostSurfaces = 1000;
+
 std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters) {
   if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
-  return std::make_unique<render::DepthRaster>(map, render::RasterParameters{});
+  render::RasterParameters raster;
+  raster.piece_least_px = kLeastPiece_px;
+  raster.surfaces_most = kMostSurfaces;
+  raster.edges_most = parameters.pieces_most;
+  return std::make_unique<render::DepthRaster>(map, raster);
 }
 
 // Stronger's method works with all that it projects.

@@ -19,6 +19,13 @@ std::vector<Sphere> spheres_of_edges(const world::Map& map) {
   return spheres;
 }
 
+// Whatever of the view has at least this inverse depth lies within a distance.
+float least_w_within(float distance_m, const View& view) {
+  const double x = std::max(view.cx + 0.5, view.width - 0.5 - view.cx) / view.fx;
+  const double y = std::max(view.cy + 0.5, view.height - 0.5 - view.cy) / view.fy;
+  return static_cast<float>(std::sqrt(1.0 + x * x + y * y)) / std::max(distance_m, 1e-6F);
+}
+
 }  // namespace
 
 DepthRaster::DepthRaster(const world::Map& map, const RasterParameters& parameters)
@@ -27,7 +34,8 @@ DepthRaster::DepthRaster(const world::Map& map, const RasterParameters& paramete
       views_(parameters.width, parameters.height),
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, parameters),
-      edges_(spheres_of_edges(map), parameters.looked_at_most, parameters.edges_most),
+      edges_(spheres_of_edges(map), {.looked_at_most = parameters.looked_at_most, .chosen_most = parameters.edges_most},
+             Preference::kLargest),
       buffer_(parameters.width, parameters.height) {
   // An edge that is crossed by many things falls into many pieces, but few do.
   found_.reserve(2 * std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)) + 64);
@@ -41,7 +49,10 @@ void DepthRaster::look(const geometry::Pose& X_WC, const geometry::Camera& camer
   found_.clear();
   // Spheres are told by their radius over their distance.
   const double least_edge = 0.5 * parameters_.piece_least_px / std::max(camera.fx_px, camera.fy_px);
-  for (const std::uint32_t edge : edges_.select(surfaces_.frustum(), least_edge)) look_at_edge(edge);
+  // Further away than every surface was drawn, nobody knows what is hidden.
+  least_w_ = least_w_within(surfaces_.reach_m(), *view_);
+  for (const std::uint32_t edge : edges_.select(surfaces_.frustum(), least_edge, surfaces_.reach_m()))
+    look_at_edge(edge);
   keep_longest(std::min(pieces.capacity(), static_cast<std::size_t>(parameters_.pieces_most)));
   const auto earlier = [](const VisiblePiece& a, const VisiblePiece& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.from < b.from;
@@ -59,7 +70,7 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
   const world::Edge& edge = map_.edges[name];
   Line line;
   const auto near = static_cast<float>(parameters_.near_m);
-  if (!line.set(surfaces_.corner(edge.vertices[0]), surfaces_.corner(edge.vertices[1]), *view_, near)) return;
+  if (!line.set(surfaces_.corner(edge.vertices[0]), surfaces_.corner(edge.vertices[1]), *view_, near, least_w_)) return;
   line.own = edge.surfaces;
   // An edge may lie behind by the tolerance: held a hair nearer, it need not be asked about at each sample.
   line.nearer = 1.0F / (1.0F - static_cast<float>(parameters_.tolerance));

@@ -57,6 +57,7 @@ class DepthRaster : public Expectation {
   DepthBuffer buffer_;
   std::vector<VisiblePiece> found_;
   std::vector<float> lengths_;
+  float least_w_ = 0.0F;  ///< 1/Z [1/m]: edges are not looked at any further away.
 };
 
 }  // namespace cgsr::render

@@ -45,6 +45,10 @@ std::vector<std::uint32_t> order_of(std::span<const SphereGroups::Sphere> sphere
   return order;
 }
 
+constexpr auto better = [](const auto& a, const auto& b) {
+  return a.rank != b.rank ? a.rank < b.rank : a.index < b.index;
+};
+
 }  // namespace
 
 Frustum frustum_of(const geometry::Pose& X_WC, const View& view, double near_m) {
@@ -71,17 +75,20 @@ void SphereGroups::Spheres::resize(std::size_t count) {
   radius.resize(count);
 }
 
-SphereGroups::SphereGroups(std::span<const Sphere> spheres, int looked_at_most, int chosen_most)
+SphereGroups::SphereGroups(std::span<const Sphere> spheres, const SelectionLimits& limits, Preference preference)
     : count_(spheres.size()),
-      looked_at_most_(std::max(static_cast<std::size_t>(looked_at_most), kGroup)),
-      chosen_most_(static_cast<std::size_t>(chosen_most)),
+      looked_at_most_(std::max(static_cast<std::size_t>(limits.looked_at_most), kGroup)),
+      chosen_most_(static_cast<std::size_t>(limits.chosen_most)),
+      weight_most_(static_cast<std::uint64_t>(limits.weight_most)),
+      preference_(preference),
       index_(order_of(spheres)) {
   items_.resize(count_);
+  weight_.resize(count_);
   const std::size_t group_count = (count_ + kGroup - 1) / kGroup;
   groups_.resize(group_count);
   group_margin_.resize(group_count);
   margin_.resize(kGroup);
-  near_.reserve(std::max(group_count, std::min(count_, looked_at_most_ + kGroup)));
+  ranked_.reserve(std::max(group_count, std::min(count_, looked_at_most_ + kGroup)));
   place_.reserve(std::min(count_, looked_at_most_ + kGroup));
   chosen_.reserve(std::min(count_, looked_at_most_ + kGroup));
   for (std::size_t i = 0; i < count_; ++i) {
@@ -90,6 +97,7 @@ SphereGroups::SphereGroups(std::span<const Sphere> spheres, int looked_at_most, 
     items_.y[i] = sphere.centre.y();
     items_.z[i] = sphere.centre.z();
     items_.radius[i] = sphere.radius;
+    weight_[i] = sphere.weight;
   }
   for (std::size_t g = 0; g < group_count; ++g) {
     const std::size_t first = g * kGroup;
@@ -114,66 +122,95 @@ SphereGroups::SphereGroups(std::span<const Sphere> spheres, int looked_at_most, 
   }
 }
 
-std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum, double least) {
+std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum, double least, float within_m) {
   const auto least_squared = static_cast<float>(least * least);
-  cut_ = false;
-  near_.clear();
+  reach_m_ = kEverything;
+  weight_in_view_ = 0;
+  ranked_.clear();
   place_.clear();
   chosen_.clear();
   margins_in(frustum, groups_.x.data(), groups_.y.data(), groups_.z.data(), group_margin_.size(), group_margin_.data());
   for (std::size_t g = 0; g < group_margin_.size(); ++g) {
     if (group_margin_[g] < -groups_.radius[g]) continue;
     const Eigen::Vector3f centre(groups_.x[g], groups_.y[g], groups_.z[g]);
-    near_.push_back({(centre - frustum.p_WC).norm() - groups_.radius[g], static_cast<std::uint32_t>(g)});
+    const float near_m = (centre - frustum.p_WC).norm() - groups_.radius[g];
+    if (near_m <= within_m) ranked_.push_back({near_m, static_cast<std::uint32_t>(g)});
   }
-  if (near_.size() * kGroup > looked_at_most_) {
-    cut_ = true;
-    const auto middle = near_.begin() + static_cast<std::ptrdiff_t>(looked_at_most_ / kGroup);
-    std::nth_element(near_.begin(), middle, near_.end(),
-                     [](const Near& a, const Near& b) { return a.distance_m < b.distance_m; });
-    near_.erase(middle, near_.end());
-    std::sort(near_.begin(), near_.end(), [](const Near& a, const Near& b) { return a.index < b.index; });
-  }
-  for (const Near& group : near_) {
+  if (ranked_.size() * kGroup > looked_at_most_) nearest_groups();
+  for (const Ranked& group : ranked_) {
     const std::size_t first = group.index * kGroup;
     const std::size_t last = std::min(first + kGroup, count_);
     if (group_margin_[group.index] >= groups_.radius[group.index]) {  // all of it is in view
-      for (std::size_t i = first; i < last; ++i) keep_if_large(i, frustum, least_squared);
+      for (std::size_t i = first; i < last; ++i) keep_if_wanted(i, frustum, least_squared, within_m);
       continue;
     }
     margins_in(frustum, &items_.x[first], &items_.y[first], &items_.z[first], last - first, margin_.data());
     for (std::size_t i = first; i < last; ++i) {
-      if (margin_[i - first] >= -items_.radius[i]) keep_if_large(i, frustum, least_squared);
+      if (margin_[i - first] >= -items_.radius[i]) keep_if_wanted(i, frustum, least_squared, within_m);
     }
   }
-  if (place_.size() > chosen_most_) keep_largest(frustum);
+  if (too_many()) keep_preferred(frustum);
   for (const std::uint32_t place : place_) chosen_.push_back(index_[place]);
   return chosen_;
 }
 
-void SphereGroups::keep_if_large(std::size_t place, const Frustum& frustum, float least_squared) {
+void SphereGroups::nearest_groups() {
+  const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(looked_at_most_ / kGroup);
+  std::nth_element(ranked_.begin(), end, ranked_.end(), better);
+  reach_m_ = end->rank;
+  ranked_.erase(end, ranked_.end());
+  std::sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.index < b.index; });
+}
+
+void SphereGroups::keep_if_wanted(std::size_t place, const Frustum& frustum, float least_squared, float within_m) {
   const float x = items_.x[place] - frustum.p_WC.x();
   const float y = items_.y[place] - frustum.p_WC.y();
   const float z = items_.z[place] - frustum.p_WC.z();
   const float radius = items_.radius[place];
-  if (radius * radius >= least_squared * (x * x + y * y + z * z)) place_.push_back(static_cast<std::uint32_t>(place));
+  const float squared = x * x + y * y + z * z;
+  const float furthest = within_m + radius;
+  if (radius * radius < least_squared * squared || squared > furthest * furthest) return;
+  place_.push_back(static_cast<std::uint32_t>(place));
+  weight_in_view_ += weight_[place];
 }
 
-void SphereGroups::keep_largest(const Frustum& frustum) {
-  cut_ = true;
-  near_.clear();
+bool SphereGroups::too_many() const {
+  return place_.size() > chosen_most_ || (preference_ == Preference::kNearest && weight_in_view_ > weight_most_);
+}
+
+void SphereGroups::keep_preferred(const Frustum& frustum) {
+  ranked_.clear();
   for (const std::uint32_t place : place_) {
     const Eigen::Vector3f centre(items_.x[place], items_.y[place], items_.z[place]);
     const float distance = (centre - frustum.p_WC).norm();
-    near_.push_back({distance / std::max(items_.radius[place], 1e-6F), place});
+    const float radius = items_.radius[place];
+    ranked_.push_back(
+        {preference_ == Preference::kNearest ? distance - radius : distance / std::max(radius, 1e-6F), place});
   }
-  const auto middle = near_.begin() + static_cast<std::ptrdiff_t>(chosen_most_);
-  std::nth_element(near_.begin(), middle, near_.end(),
-                   [](const Near& a, const Near& b) { return a.distance_m < b.distance_m; });
-  near_.erase(middle, near_.end());
+  if (ranked_.size() > chosen_most_) {
+    const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(chosen_most_);
+    std::nth_element(ranked_.begin(), end, ranked_.end(), better);
+    if (preference_ == Preference::kNearest) reach_m_ = std::min(reach_m_, end->rank);
+    ranked_.erase(end, ranked_.end());
+  }
+  if (preference_ == Preference::kNearest) keep_within_weight();
   place_.clear();
-  for (const Near& kept : near_) place_.push_back(kept.index);
+  for (const Ranked& kept : ranked_) place_.push_back(kept.index);
   std::sort(place_.begin(), place_.end());
+}
+
+void SphereGroups::keep_within_weight() {
+  std::uint64_t weight = 0;
+  for (const Ranked& kept : ranked_) weight += weight_[kept.index];
+  if (weight <= weight_most_) return;
+  std::sort(ranked_.begin(), ranked_.end(), better);
+  weight = 0;
+  const auto end = std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& kept) {
+    weight += weight_[kept.index];
+    return weight > weight_most_;
+  });
+  reach_m_ = std::min(reach_m_, end->rank);
+  ranked_.erase(end, ranked_.end());
 }
 
 }  // namespace cgsr::render

@@ -19,7 +19,7 @@ std::vector<Sphere> spheres_of_surfaces(const world::Map& map) {
     if (box.isEmpty()) {
       spheres.push_back({});
     } else {
-      spheres.push_back({box.center(), 0.5F * box.diagonal().norm()});
+      spheres.push_back({box.center(), 0.5F * box.diagonal().norm(), surface.triangle_count});
     }
   }
   return spheres;
@@ -30,7 +30,11 @@ std::vector<Sphere> spheres_of_surfaces(const world::Map& map) {
 SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& parameters)
     : map_(map),
       parameters_(parameters),
-      surfaces_(spheres_of_surfaces(map), parameters.looked_at_most, parameters.surfaces_most),
+      surfaces_(spheres_of_surfaces(map),
+                {.looked_at_most = parameters.looked_at_most,
+                 .chosen_most = parameters.surfaces_most,
+                 .weight_most = parameters.triangles_most},
+                Preference::kNearest),
       corners_(map.vertices.size()),
       planes_(map.surfaces.size()),
       front_(map.surfaces.size()),
@@ -66,15 +70,12 @@ const ViewedCorner& SurfaceRaster::corner(std::uint32_t vertex) {
 void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer) {
   place(X_WC, view);
   buffer.clear();
-  int triangles_left = parameters_.triangles_most;
   const double least_surface = 0.5 * parameters_.surface_least_cells / std::max(view_->fx, view_->fy);
   for (const std::uint32_t name : surfaces_.select(frustum_, least_surface)) {
     const world::Surface& surface = map_.surfaces[name];
     if (!plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
     const DepthPlane& plane = planes_[name];
     front_[name] = surface.normal.dot(p_WC_) > surface.offset_m ? 1 : 0;
-    triangles_left -= static_cast<int>(surface.triangle_count);
-    if (triangles_left < 0) break;
     for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
       const std::uint32_t index = surface.first_triangle + t;
       const world::Triangle& triangle = map_.triangles[index];

@@ -24,6 +24,8 @@ class SurfaceRaster {
 
   [[nodiscard]] const View& view() const { return *view_; }
   [[nodiscard]] const Frustum& frustum() const { return frustum_; }
+  /// How far from the camera everything that hides something was drawn (SphereGroups::reach_m).
+  [[nodiscard]] float reach_m() const { return surfaces_.reach_m(); }
 
   /// A corner of the map in this view.
   const ViewedCorner& corner(std::uint32_t vertex);

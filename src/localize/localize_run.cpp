@@ -42,6 +42,7 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   auto config = configuration_of(options);
   if (!config) return tl::unexpected(config.error());
   state.config = *config;
+  if (options.units > 0) run.units_ = static_cast<std::uint32_t>(options.units);
   auto camera = read_camera(options.camera);
   if (!camera) return tl::unexpected(camera.error());
   state.camera = *camera;
@@ -132,16 +133,17 @@ Result<const PoseRow*> LocalizeRun::row_for(const std::vector<PoseRow>& rows, co
   return fail(fmt::format("{}: holds no pose for image {}", file, frame_));
 }
 
-localization::Correction LocalizeRun::follow(const ImageView& image) {
+localization::Correction LocalizeRun::follow(const ImageView& image, std::uint32_t units) {
   localization::PoseTracker& tracker = *state_->tracker;
-  UnlimitedBudget budget;
-  // No robot waits: an image is looked at until it says where the camera is. What the first one costs is not counted: its prior is wide.
+  auto budget = runtime::StageBudget::of_units(units);
+  // What the first image costs is not counted: its prior is wide.
   const bool counted = images_ > 0;
   if (counted) count_stage_begin();
   for (int look = 0; look < kMostLooks; ++look) {
     tracker.see(image, budget);
-    if (!state_->localizer->searching()) break;
+    if (!state_->localizer->searching() || budget.refused()) break;
   }
+  if (counted) units_most_ = std::max(units_most_, budget.granted());
   if (counted) {
     count_stage_end("localize");
     count_image_end();
@@ -158,11 +160,12 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
       if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
       X_OR_before_ = (*row)->X;
     }
-    if (images_ == 0) return follow(image);
+    // No robot waits for the first one: it is looked at until it says where the camera is.
+    if (images_ == 0) return follow(image, runtime::StageBudget::kAll);
     const geometry::Pose X_WC_before = state_->tracker->now().X_WC;
     const bool corrected_before = state_->tracker->now().correction.corrected;
     state_->tracker->moved(odometry_.empty() ? X_RR_last_ : X_R0R1);
-    const localization::Correction answer = follow(image);
+    const localization::Correction answer = follow(image, units_);
     // Without odometry: as it moved last, so it moves on; what ends a loss is no movement.
     if (odometry_.empty())
       X_RR_last_ = answer.corrected && corrected_before

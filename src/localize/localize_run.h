@@ -10,6 +10,7 @@
 #include "pipeline/localization/localizer.h"
 #include "pipeline/localization/pose_tracker.h"
 #include "pipeline/render/depth_raster.h"
+#include "pipeline/runtime/stage_budget.h"
 #include "pipeline/world/map.h"
 #include "platform/error.h"
 #include "src/config/localization.h"
@@ -35,6 +36,7 @@ struct LocalizeOptions {
   std::string csv;
   std::string video;
   std::string json;
+  int units = 60;  ///< of work at each image after the first that is followed; 0: all that it asks for.
 };
 
 /// Corrects the poses of a camera's images, one after the other: either follows from one pose, carried by odometry where there is some, or
@@ -53,6 +55,8 @@ class LocalizeRun {
   [[nodiscard]] const config::Localization& config() const { return state_->config; }
   [[nodiscard]] int images() const { return images_; }
   [[nodiscard]] int corrected() const { return corrected_; }
+  /// Units of work that the image which took most of them was granted, the first one of a followed camera aside.
+  [[nodiscard]] std::uint32_t units_most() const { return units_most_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] const world::Map& map() const { return state_->map; }
 
@@ -74,7 +78,7 @@ class LocalizeRun {
   [[nodiscard]] Result<void> open_poses(const LocalizeOptions& options);
   [[nodiscard]] Result<void> open_outputs(const LocalizeOptions& options);
   [[nodiscard]] Result<localization::Correction> look(const ImageView& image);
-  [[nodiscard]] localization::Correction follow(const ImageView& image);
+  [[nodiscard]] localization::Correction follow(const ImageView& image, std::uint32_t units);
   [[nodiscard]] Result<void> write(const ImageView& image, const localization::Correction& answer);
   [[nodiscard]] Result<const PoseRow*> row_for(const std::vector<PoseRow>& rows, const std::string& file) const;
 
@@ -94,6 +98,8 @@ class LocalizeRun {
   std::int64_t frame_ = 0;
   int images_ = 0;
   int corrected_ = 0;
+  std::uint32_t units_ = runtime::StageBudget::kAll;
+  std::uint32_t units_most_ = 0;
 };
 
 }  // namespace cgsr::app

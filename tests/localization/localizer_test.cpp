@@ -152,6 +152,37 @@ TEST(Localizer, SearchesOverImagesOfAMovingCamera) {
   EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.02);
 }
 
+class CountedBudget final : public WorkBudget {
+ public:
+  explicit CountedBudget(int units) : left_(units) {}
+  bool grant() override { return left_-- > 0; }
+
+ private:
+  int left_;
+};
+
+// Whatever the search still has to do, an image's looks at the map are bounded by what it is granted.
+TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, camera, 1.5, 1);
+  constexpr int kUngranted = 7;  // the search's first one, and those of its verdict
+  for (const int units : {1, 3, 8, 20}) {
+    for (const double scale : {0.3, 1.0, 3.0}) {
+      LocalizerParameters parameters;
+      parameters.starts_per_image = 0;
+      Localizer localizer(map, camera, parameters);
+      for (int image = 0; image < 30; ++image) {
+        CountedBudget budget(units);
+        const Correction answer =
+            localizer.correct(picture.view(), prior_at(truth, PriorSigmas::floor().times(scale)), budget);
+        EXPECT_LE(answer.looks, units + kUngranted);
+      }
+    }
+  }
+}
+
 TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
   testing::MapBuilder b;
   const std::uint32_t floor = b.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, b.grey(0.2F));

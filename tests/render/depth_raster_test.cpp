@@ -292,6 +292,59 @@ TEST(DepthRaster, AMapBeyondTheBudgetKeepsTheNearest) {
   for (const auto& p : pieces) EXPECT_LT(map.vertices[map.edges[p.edge].vertices[0]].x(), 20.0F);
 }
 
+// With a budget that holds only a part of what is in view, what is answered is still visible in the whole map.
+TEST(DepthRasterProperty, BeyondTheBudgetHiddenIsHiddenAndTheLongestNearOnesStay) {
+  std::mt19937 random(19);
+  Map map;
+  for (int i = 0; i < 16; ++i) {
+    for (int j = -8; j < 8; ++j) {
+      const Vector3f a(2.0F + 0.5F * static_cast<float>(i), 0.5F * static_cast<float>(j), 0.0F);
+      const auto size = [&] { return static_cast<float>(uniform(random, 0.1, 0.35)); };
+      add_box(map, a, a + Vector3f(size(), size(), 2.0F * size()));
+    }
+  }
+  RasterParameters parameters;
+  parameters.surfaces_most = 300;
+  parameters.triangles_most = 500;
+  parameters.edges_most = 200;
+  DepthRaster raster(map, parameters);
+  const Camera camera;
+  double ours_px = 0.0;
+  double hidden_px = 0.0;
+  for (int trial = 0; trial < 3; ++trial) {
+    const Pose X_WC =
+        looking_from({uniform(random, -1, 1), uniform(random, -2, 2), 0.9}, {8.0, uniform(random, -2, 2), 0.3});
+    std::vector<VisiblePiece> pieces;
+    raster.look(X_WC, camera, pieces);
+    EXPECT_GT(pieces.size(), 60U);
+    const auto edges_of = [](const std::vector<VisiblePiece>& some) {
+      std::vector<std::uint32_t> edges;
+      edges.reserve(some.size());
+      for (const VisiblePiece& piece : some) edges.push_back(piece.edge);
+      edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+      return edges;
+    };
+    const auto kept = edges_of(pieces);
+    EXPECT_LE(kept.size(), 200U);
+    for (const VisiblePiece& piece : pieces) {
+      const Vector3d a = map.vertices[map.edges[piece.edge].vertices[0]].cast<double>();
+      const Vector3d b = map.vertices[map.edges[piece.edge].vertices[1]].cast<double>();
+      const double length_px = (piece.p1 - piece.p0).norm();
+      const double seen_px = exact_length_px(map, X_WC, camera, a + static_cast<double>(piece.from) * (b - a),
+                                             a + static_cast<double>(piece.to) * (b - a));
+      ours_px += length_px;
+      hidden_px += std::max(0.0, length_px - seen_px);
+    }
+    // Of the nearest the long ones are all there.
+    for (const VisiblePiece& piece : seen(map, X_WC)) {
+      const float x = map.vertices[map.edges[piece.edge].vertices[0]].x();
+      if (x > 2.4F || (piece.p1 - piece.p0).norm() < 60.0F) continue;
+      EXPECT_TRUE(std::binary_search(kept.begin(), kept.end(), piece.edge)) << trial;
+    }
+  }
+  EXPECT_LT(hidden_px, 0.01 * ours_px);
+}
+
 TEST(DepthRasterFault, AMapOfNothingShowsNothing) {
   const Map map;
   EXPECT_TRUE(seen(map, Pose::Identity()).empty());
