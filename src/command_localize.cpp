@@ -56,10 +56,10 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   auto* pose = command->add_option("--pose", options->pose, "CSV with the pose of image 0: follow from there");
   auto* priors = command->add_option("--priors", options->priors, "CSV with a pose for each image: correct each one");
   pose->excludes(priors);
-  command
-      ->add_option("--odometry", options->odometry,
-                   "CSV with the robot's pose in its odometry's frame, a row for each image")
-      ->excludes(priors);
+  auto* odometry = command
+                       ->add_option("--odometry", options->odometry,
+                                    "CSV with the robot's pose in its odometry's frame, a row for each image")
+                       ->excludes(priors);
   command
       ->add_option("--mount", options->mount,
                    "CSV with the camera's pose on the robot; without it the odometry is the camera's own")
@@ -69,12 +69,13 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--config", options->config,
                       "a file as config/localization/floor.toml; without it six free numbers");
   command
-      ->add_option("--units", options->units,
-                   "with --pose: most looks at the map and rounds of matching for an image after the first; a search "
-                   "goes on over the images that follow; 0: all it asks for")
+      ->add_option(
+          "--units", options->units,
+          "with --odometry: most looks at the map and rounds of matching for an image after the first; a search "
+          "goes on over the images that follow; 0: all it asks for")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str()
-      ->excludes(priors);
+      ->needs(odometry);
   command->add_option("--csv", options->csv, "write a row for each image");
   command->add_option("--video", options->video, "write a video with the map's edges over the images");
   command->add_option("--json", options->json, "write the summary for machines");

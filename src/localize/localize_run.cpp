@@ -42,7 +42,6 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   auto config = configuration_of(options);
   if (!config) return tl::unexpected(config.error());
   state.config = *config;
-  if (options.units > 0) run.units_ = static_cast<std::uint32_t>(options.units);
   auto camera = read_camera(options.camera);
   if (!camera) return tl::unexpected(camera.error());
   state.camera = *camera;
@@ -95,6 +94,8 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     if (!odometry) return tl::unexpected(odometry.error());
     odometry_ = std::move(*odometry);
     odometry_file_ = options.odometry;
+    // It carries a search along from image to image: none has to be finished in one.
+    if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
   }
   X_RC_ = X_RC;
   state_->tracker.emplace(*state_->localizer, X_RC, state_->config.tracker);

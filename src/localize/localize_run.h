@@ -36,7 +36,7 @@ struct LocalizeOptions {
   std::string csv;
   std::string video;
   std::string json;
-  int units = 60;  ///< of work at each image after the first that is followed; 0: all that it asks for.
+  int units = 60;  ///< of work at each image after the first that is followed on odometry; 0: all that it asks for.
 };
 
 /// Corrects the poses of a camera's images, one after the other: either follows from one pose, carried by odometry where there is some, or
