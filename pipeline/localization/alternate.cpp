@@ -89,8 +89,10 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
     line.normal = edge.normal().cast<double>();
     line.offset_px = line.normal.dot(edge.middle.cast<double>());
     if (!paper) {
-      const double share = std::clamp(match.overlap_px() / kWholeOverlap_px, kLeastShare, 1.0F);
-      line.sigma_px = std::sqrt((system + static_cast<double>(edge.sigma_px) * edge.sigma_px) / share);
+      // A weak edge is rather a shadow's or a pattern's than the map's, and lies beside it without being far off.
+      line.weight = static_cast<double>(edge.weight) *
+                    static_cast<double>(std::clamp(match.overlap_px() / kWholeOverlap_px, kLeastShare, 1.0F));
+      line.sigma_px = std::sqrt(system + static_cast<double>(edge.sigma_px) * edge.sigma_px);
     }
     line.p_W = view_.point_at(piece, match.from_px);
     lines_.push_back(line);

@@ -95,7 +95,7 @@ void summarise(std::span<const LineDistance> lines, const Prior& prior, const Ma
     Vector6d J;
     if (!view.distance(line, distance, J)) continue;
     const double inverse_variance = 1.0 / (line.sigma_px * line.sigma_px);
-    const double weight = weight_of(distance * distance * inverse_variance, robust);
+    const double weight = line.weight * weight_of(distance * distance * inverse_variance, robust);
     accumulate(A, g, J, weight * inverse_variance, distance);
     squares += weight * distance * distance;
     weights += weight;
@@ -162,7 +162,7 @@ Cost cost_of(std::span<const LineDistance> lines, const Pose& X_WC, const Prior&
   for (const LineDistance& line : lines) {
     double distance = 0.0;
     if (!view.distance(line, distance)) continue;
-    cost.sum += loss_of(distance * distance / (line.sigma_px * line.sigma_px), robust);
+    cost.sum += line.weight * loss_of(distance * distance / (line.sigma_px * line.sigma_px), robust);
     ++cost.count;
   }
   const Vector6d off = geometry::step_between(prior.X_WC, X_WC);
@@ -188,8 +188,8 @@ Solution solve(std::span<const LineDistance> lines, const Pose& start, const Pri
       Vector6d J;
       if (!view.distance(line, distance, J)) continue;
       const double inverse_variance = 1.0 / (line.sigma_px * line.sigma_px);
-      accumulate(A, g, J, inverse_variance * weight_of(distance * distance * inverse_variance, options.robust),
-                 distance);
+      const double weight = line.weight * weight_of(distance * distance * inverse_variance, options.robust);
+      accumulate(A, g, J, weight * inverse_variance, distance);
     }
     complete(A);
     // The prior's error turns with the pose by less than its own size: its derivative is taken as 1.

@@ -16,6 +16,7 @@ struct LineDistance {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitY();  ///< of the line, unit, in pixels of the camera without lens.
   double offset_px = 0.0;                             ///< normal . p on the line.
   double sigma_px = 1.0;
+  double weight = 1.0;  ///< how sure it is that the line is the map's, 0..1: what it counts, however near it lies.
 };
 
 struct SolverOptions {
@@ -32,7 +33,7 @@ struct Solution {
   geometry::Matrix6d data_information = geometry::Matrix6d::Zero();  ///< of the distances alone.
   geometry::Matrix6d information = geometry::Matrix6d::Zero();       ///< with the prior.
   double cost = 0.0;                                                 ///< what was minimised, at X_WC.
-  double rms_px = 0.0;                                               ///< of the distances, robust weights counted.
+  double rms_px = 0.0;                                               ///< of the distances, weights counted.
   int steps = 0;
 };
 
