@@ -82,16 +82,17 @@ void PoseTracker::moved(const Pose& X_R0R1) {
   localizer_->carried(X_C0C1);
 }
 
-// A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along.
+// A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along. The camera stays
+// above where it was: turned about the wheels instead, a mount that is told wrong by a third of a degree would push it aside at every image.
 void PoseTracker::flatten() {
   const Eigen::Vector3d axle(0.0, 0.0, axle_height_m_);
   Pose tilt = Pose::Identity();
   tilt.linear() = Eigen::AngleAxisd(pitch_rad_, Eigen::Vector3d::UnitY()).toRotationMatrix();
   tilt.translation() = axle - tilt.linear() * axle;
   const Pose X_WR = now_.X_WC * X_RC_.inverse() * tilt.inverse();
-  const Pose level =
-      geometry::pose_on_floor(X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR));
-  now_.X_WC = level * tilt * X_RC_;
+  const Pose level = geometry::pose_on_floor(0.0, 0.0, geometry::heading_of(X_WR)) * tilt * X_RC_;
+  now_.X_WC.linear() = level.linear();
+  now_.X_WC.translation().z() = level.translation().z();
   for (const int i : {2, 3, 4}) {
     now_.covariance.row(i).setZero();
     now_.covariance.col(i).setZero();

@@ -84,6 +84,19 @@ TEST_F(Tracking, BlackImagesLeaveThePredictionAndAreSaidToBeALoss) {
   EXPECT_LT(geometry::step_between(X_WR * X_RC_, tracker_.now().X_WC).head<3>().norm(), 0.02);
 }
 
+// A camera that the last image saw lean to one side, as one does whose mount is told wrong, is upright again for the next one: and stays where it
+// was. Otherwise it wanders along a wall that shows nothing but its skirting.
+TEST_F(Tracking, LevellingMovesNothingAside) {
+  const Pose X_WC = geometry::pose_on_floor(1.0, 1.6, 0.2) * X_RC_;
+  geometry::Vector6d lean = geometry::Vector6d::Zero();
+  lean.segment<2>(3) << 0.4 * kDegree, -0.3 * kDegree;
+  tracker_.start(prior_at(geometry::moved(X_WC, lean), kKnown));
+  const TrackedPose& now = see_black();
+  const geometry::Vector6d left = geometry::step_between(X_WC, now.X_WC);
+  EXPECT_LT(left.head<3>().norm(), 1e-6);
+  EXPECT_LT(left.segment<2>(3).norm(), 1e-5);
+}
+
 // The camera is carried away unseen by 20 cm and 6 degrees: the belief widens until the pose is found.
 TEST_F(Tracking, RecoversFromBeingCarriedAway) {
   Pose X_WR = geometry::pose_on_floor(1.0, 1.6, 0.2);
