@@ -17,6 +17,8 @@ constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the
 constexpr float kChoiceCounts =
     0.04F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
 constexpr int kLeastExpected = 3;
+// Where a narrow prior holds what they leave open: a bare wall shows its skirting, and that says how far it is.
+constexpr int kLeastFollowed = 2;
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -39,8 +41,11 @@ float evidence_of(const Estimate& estimate, const Standing& standing) {
 
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters) {
-  if (estimate.expected < kLeastExpected) return Reason::kNothingExpected;
-  if (!estimate.solved || estimate.matches < parameters.matches_least) return Reason::kTooFewMatches;
+  const bool narrow = !standing || standing->narrow;
+  const int least_expected = narrow ? kLeastFollowed : kLeastExpected;
+  const int least_matches = narrow ? std::min(kLeastFollowed, parameters.matches_least) : parameters.matches_least;
+  if (estimate.expected < least_expected) return Reason::kNothingExpected;
+  if (!estimate.solved || estimate.matches < least_matches) return Reason::kTooFewMatches;
   if (!standing && estimate.explained < parameters.explained_tracking) return Reason::kUnexplained;
   if (estimate.solution.rms_px > parameters.rms_most_px) return Reason::kResidual;
   if (estimate.prior_chi2 > parameters.prior_chi2_most) return Reason::kFarFromPrior;

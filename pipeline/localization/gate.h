@@ -13,8 +13,9 @@ geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParame
 
 /// How an estimate stands among the poses that a search tried.
 struct Standing {
-  float lead = 0.0F;   ///< in rank, ahead of the next best pose that is another one.
-  double cells = 1.0;  ///< how many poses that differ the prior holds (Search::cells).
+  float lead = 0.0F;    ///< in rank, ahead of the next best pose that is another one.
+  double cells = 1.0;   ///< how many poses that differ the prior holds (Search::cells).
+  bool narrow = false;  ///< the prior is hardly wider than one pose.
 };
 
 /// What speaks for an estimate that a search found: how well image and map agree there, how far ahead of the next best pose it is, less how

@@ -169,7 +169,7 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
     const geometry::Vector6d step = geometry::step_between(best.solution.X_WC, other.solution.X_WC);
     if (step.dot(metric * step) > kNearRival_px * kNearRival_px) lead = std::min(lead, rank(best) - rank(other));
   }
-  judge(settled(best, belief), Standing{.lead = lead}, answer);
+  judge(settled(best, belief), Standing{.lead = lead, .narrow = true}, answer);
   return answer;
 }
 

@@ -71,7 +71,7 @@ struct LocalizerParameters {
     visit.number("finalists", self.finalists, {1, 64}, "", "starts that are refined");
     visit.number("neighbours", self.neighbours, {0, 500}, "", "poses about the best one that are tried against it");
     visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
-    visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate");
+    visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate; two where a narrow prior is followed");
     visit.number("explained_tracking", self.explained_tracking, {0.0, 1.0}, "",
                  "gate where a narrow prior is followed: share of the expected length found; what hides much of the "
                  "map moves no pose");

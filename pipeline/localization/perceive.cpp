@@ -5,8 +5,8 @@
 namespace cgsr::localization {
 namespace {
 
-constexpr int kHalvedFrom = 400;  // shorter side, px: below, halving would cost more edges than it saves work
-constexpr std::size_t kLeastSegments = 4;
+constexpr int kHalvedFrom = 400;           // shorter side, px: below, halving would cost more edges than it saves work
+constexpr std::size_t kLeastSegments = 2;  // a bare wall has its skirting
 
 // Means of 2x2 lumas, rounded half up; kStep: bytes from one luma to the next. Both loops become vector instructions.
 template <int kStep>

@@ -70,6 +70,17 @@ TEST(Gate, AsksForMoreWhereThereIsMoreToChooseFrom) {
   EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kAmbiguous);
 }
 
+// Who drives along a bare wall sees its skirting and no more: its distance is better than nothing, and the prior holds the rest.
+TEST(Gate, AFollowedPoseNeedsLessThanOneThatWasSearched) {
+  Estimate estimate = good();
+  estimate.expected = 2;
+  estimate.matches = 2;
+  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kNone);
+  EXPECT_EQ(judged(estimate), Reason::kNothingExpected);
+  estimate.matches = 1;
+  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kTooFewMatches);
+}
+
 TEST(Gate, CovarianceHoldsTheMapsOwnError) {
   LocalizerParameters parameters;
   parameters.map_sigma_m = 0.02;
