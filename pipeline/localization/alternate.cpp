@@ -18,6 +18,8 @@ constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
 constexpr double kLeastNoise = 0.3;  // of the stated noise
 
+constexpr float kBeside_px = 2.0F;  // of a line, what lies on either side of it
+
 }  // namespace
 
 Belief::Belief(const Prior& given) : prior(given), information(geometry::Matrix6d::Zero()) {
@@ -101,6 +103,18 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
   }
 }
 
+// Of all that was perceived, each by its weight, what lies on the map as it was looked at last or borders on it.
+float Alternation::length_on_map(const SegmentTable& perceived) const {
+  float length = 0.0F;
+  for (const PerceivedEdge& edge : perceived.edges()) {
+    const Eigen::Vector2f aside = kBeside_px * edge.normal();
+    if (expectation_->covers(edge.middle + aside) || expectation_->covers(edge.middle - aside)) {
+      length += 2.0F * edge.half_length * edge.weight;
+    }
+  }
+  return length;
+}
+
 void Alternation::judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const {
   float expected = 0.0F;
   for (const ProjectedPiece& piece : view_.projected()) expected += 2.0F * piece.half_length * piece.weight;
@@ -115,6 +129,8 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
   const float both = expected + perceived.whole_length();
   estimate.explained = expected > 0.0F ? std::min(1.0F, found / expected) : 0.0F;
   estimate.agreement = both > 0.0F ? std::min(1.0F, (found + foreseen) / both) : 0.0F;
+  const float on_map = expected + length_on_map(perceived);
+  estimate.agreement_on_map = on_map > 0.0F ? std::min(1.0F, (found + foreseen) / on_map) : 0.0F;
 }
 
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,

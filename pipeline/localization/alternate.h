@@ -34,6 +34,8 @@ struct Estimate {
   /// How much of what is expected was perceived and of what was perceived is expected, 0..1: a pose that expects next to nothing is not right
   /// because it finds that, nor one that expects an edge everywhere.
   float agreement = 0.0F;
+  /// The same of what was perceived where the map shows something: of a map that is a single thing, what stands about it says nothing.
+  float agreement_on_map = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;
 };
@@ -73,6 +75,7 @@ class Alternation {
 
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
+  [[nodiscard]] float length_on_map(const SegmentTable& perceived) const;
   void judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const;
 
   LocalizerParameters parameters_;

@@ -34,8 +34,9 @@ geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParame
 }
 
 float evidence_of(const Estimate& estimate, const Standing& standing) {
-  const float lead = std::min({standing.lead, kMostLead, estimate.agreement - kChance});
-  return estimate.agreement + lead - kPriorCounts * estimate.prior_chi2 -
+  const float agreement = estimate.agreement_on_map;
+  const float lead = std::min({standing.lead, kMostLead, agreement - kChance});
+  return agreement + lead - kPriorCounts * estimate.prior_chi2 -
          kChoiceCounts * static_cast<float>(std::log(std::max(1.0, standing.cells)));
 }
 

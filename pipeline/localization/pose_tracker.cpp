@@ -26,6 +26,11 @@ bool says_nothing(Reason reason) {
          reason == Reason::kNoMap;
 }
 
+// There is nothing to see of the map: a bare wall, or what the map does not hold. The image itself is a good one.
+bool shows_nothing(Reason reason) {
+  return reason == Reason::kTooFewEdges || reason == Reason::kNothingExpected;
+}
+
 }  // namespace
 
 std::string_view name_of(TrackState state) {
@@ -116,6 +121,12 @@ void PoseTracker::widen() {
   }
 }
 
+// Carried along for so long that only a search would find it again.
+bool PoseTracker::has_outgrown() const {
+  const double place = std::sqrt(std::max(now_.covariance(0, 0), now_.covariance(1, 1)));
+  return place > parameters_.lost_m || std::sqrt(now_.covariance(5, 5)) > parameters_.lost_deg * kDegree;
+}
+
 const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask) {
   if (parameters_.floor) flatten();
   now_.correction = localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = now_.covariance}, budget, mask);
@@ -123,6 +134,7 @@ const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, 
     now_.X_WC = now_.correction.X_WC;
     now_.covariance = now_.correction.covariance;
     now_.images_since_correction = 0;
+    now_.failures = 0;
     driven_m_ = 0.0;
     turned_rad_ = 0.0;
     now_.state = now_.state == TrackState::kLost ? TrackState::kRecovered : TrackState::kTracking;
@@ -130,7 +142,9 @@ const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, 
   }
   ++now_.images_since_correction;
   if (now_.state == TrackState::kRecovered) now_.state = TrackState::kTracking;
-  if (now_.images_since_correction >= parameters_.lost_after) now_.state = TrackState::kLost;
+  if (!shows_nothing(now_.correction.reason)) ++now_.failures;
+  const bool outgrown = now_.state == TrackState::kTracking && has_outgrown();
+  if (outgrown || now_.failures >= parameters_.lost_after) now_.state = TrackState::kLost;
   if (now_.state == TrackState::kLost && !says_nothing(now_.correction.reason)) widen();
   return now_;
 }

@@ -16,6 +16,8 @@ struct PoseTrackerParameters {
   double height_m = 0.01;
   bool floor = true;
   int lost_after = 15;
+  double lost_m = 0.15;
+  double lost_deg = 4.0;
   double widen = 1.25;
   double wide_m = 0.5;
   double wide_deg = 12.0;
@@ -30,7 +32,11 @@ struct PoseTrackerParameters {
     visit.number("height_m", self.height_m, {0.0005, 1.0}, "m", "on a floor: sigma of the camera's height");
     visit.flag("floor", self.floor, "height, roll and pitch are those of a robot on a level floor");
     visit.number("lost_after", self.lost_after, {1, 1000}, "",
-                 "images without a correction after which the pose is lost");
+                 "images that should have corrected the pose and did not, after which it is lost; those that show "
+                 "nothing of the map do not count");
+    visit.number("lost_m", self.lost_m, {0.01, 10.0}, "m",
+                 "sigma of the position along the floor beyond which the pose is lost too");
+    visit.number("lost_deg", self.lost_deg, {0.1, 90.0}, "deg", "likewise of the heading");
     visit.number("widen", self.widen, {1.0, 10.0}, "", "growth of the belief with each search that fails when lost");
     visit.number("wide_m", self.wide_m, {0.05, 10.0}, "m", "the belief's position never grows beyond this sigma");
     visit.number("wide_deg", self.wide_deg, {1.0, 90.0}, "deg", "nor its heading beyond this");
@@ -53,6 +59,7 @@ struct TrackedPose {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   Correction correction;  ///< of this image: what happened and why.
   int images_since_correction = 0;
+  int failures = 0;  ///< of those, the ones that should have corrected it.
 };
 
 /// The pose of a camera on a robot over time: odometry carries it from image to image, images correct it.
@@ -84,6 +91,7 @@ class PoseTracker {
  private:
   void flatten();
   void widen();
+  [[nodiscard]] bool has_outgrown() const;
 
   Localizer* localizer_;
   geometry::Pose X_RC_;

@@ -63,7 +63,18 @@ void DepthRaster::look(const geometry::Pose& X_WC, const geometry::Camera& camer
 
 void DepthRaster::draw(const geometry::Pose& X_WC, const geometry::Camera& camera) {
   view_ = &views_.of(camera);
+  const Eigen::Vector2d scale(view_->fx / camera.fx_px, view_->fy / camera.fy_px);
+  cells_per_px_ = scale.cast<float>();
+  first_cell_ =
+      Eigen::Vector2d(view_->cx - scale.x() * camera.cx_px, view_->cy - scale.y() * camera.cy_px).cast<float>();
   surfaces_.draw(X_WC, *view_, buffer_);
+}
+
+bool DepthRaster::covers(const Eigen::Vector2f& pixel) const {
+  const Eigen::Vector2f cell = first_cell_ + cells_per_px_.cwiseProduct(pixel);
+  const int x = std::clamp(static_cast<int>(std::lround(cell.x())), 0, buffer_.width() - 1);
+  const int y = std::clamp(static_cast<int>(std::lround(cell.y())), 0, buffer_.height() - 1);
+  return buffer_.name(x, y) != DepthBuffer::kNothing;
 }
 
 void DepthRaster::look_at_edge(std::uint32_t name) {

@@ -30,6 +30,8 @@ class DepthRaster : public Expectation {
   /// capacity is given one first; otherwise nothing allocates.
   void look(const geometry::Pose& X_WC, const geometry::Camera& camera, std::vector<VisiblePiece>& pieces) override;
 
+  [[nodiscard]] bool covers(const Eigen::Vector2f& pixel) const override;
+
   /// What the last look drew: the map's triangle that is seen in each cell of `view()`.
   [[nodiscard]] const DepthBuffer& buffer() const { return buffer_; }
   [[nodiscard]] const View& view() const { return *view_; }
@@ -57,7 +59,9 @@ class DepthRaster : public Expectation {
   DepthBuffer buffer_;
   std::vector<VisiblePiece> found_;
   std::vector<float> lengths_;
-  float least_w_ = 0.0F;  ///< 1/Z [1/m]: edges are not looked at any further away.
+  Eigen::Vector2f cells_per_px_ = Eigen::Vector2f::Ones();  ///< of the last look's camera,
+  Eigen::Vector2f first_cell_ = Eigen::Vector2f::Zero();    ///< where its pixel (0, 0) lies.
+  float least_w_ = 0.0F;                                    ///< 1/Z [1/m]: edges are not looked at any further away.
 };
 
 }  // namespace cgsr::render

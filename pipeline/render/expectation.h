@@ -35,6 +35,9 @@ class Expectation {
   ///        smaller. \param pieces  cleared and filled, in the order of edges, each edge's pieces in the order of `from`; never beyond its
   ///        capacity in the frame path (longest and nearest first when there are more).
   virtual void look(const geometry::Pose& X_WC, const geometry::Camera& camera, std::vector<VisiblePiece>& pieces) = 0;
+
+  /// Did the last look see something of the map at a pixel of its camera? What lies beside the map nobody can expect. True where it is not known.
+  [[nodiscard]] virtual bool covers(const Eigen::Vector2f& /*pixel*/) const { return true; }
 };
 
 }  // namespace cgsr::render

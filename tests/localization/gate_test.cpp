@@ -14,7 +14,7 @@ Estimate good() {
   estimate.expected = 20;
   estimate.matches = 15;
   estimate.explained = 0.8F;
-  estimate.agreement = 0.7F;
+  estimate.agreement_on_map = 0.7F;
   estimate.prior_chi2 = 4.0F;
   estimate.solution.rms_px = 0.5;
   estimate.solution.information = geometry::Matrix6d::Identity() * 1e6;
@@ -41,7 +41,7 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.solved = false;
   EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
   estimate = good();
-  estimate.agreement = 0.1F;
+  estimate.agreement_on_map = 0.1F;
   EXPECT_EQ(judged(estimate), Reason::kUnexplained) << "no lead makes that enough";
   estimate = good();
   estimate.explained = 0.2F;
@@ -53,7 +53,7 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.prior_chi2 = 30.0F;
   EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
   estimate = good();
-  estimate.agreement = 0.5F;
+  estimate.agreement_on_map = 0.5F;
   EXPECT_EQ(judged(estimate, Standing{0.001F, 2.0}), Reason::kAmbiguous);
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
@@ -63,7 +63,7 @@ TEST(Gate, NamesWhatIsMissing) {
 // What is enough near a narrow prior is not enough far away in a wide one, where something always fits.
 TEST(Gate, AsksForMoreWhereThereIsMoreToChooseFrom) {
   Estimate estimate = good();
-  estimate.agreement = 0.5F;
+  estimate.agreement_on_map = 0.5F;
   EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kNone);
   EXPECT_EQ(judged(estimate, Standing{0.1F, 200.0}), Reason::kAmbiguous);
   estimate.prior_chi2 = 12.0F;

@@ -33,10 +33,12 @@ class Tracking : public ::testing::Test {
     const Picture picture(map_, X_WR * X_RC_, camera_, 1.5, ++number_);
     return tracker_.see(picture.view(), budget_);
   }
-  const TrackedPose& see_black() {
-    const std::vector<std::uint8_t> black(320 * 240, 2);
+  const TrackedPose& see_black() { return see_all_of(2); }
+  const TrackedPose& see_grey() { return see_all_of(120); }
+  const TrackedPose& see_all_of(std::uint8_t level) {
+    const std::vector<std::uint8_t> image(320 * 240, level);
     return tracker_.see(
-        {.data = black.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
+        {.data = image.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8},
         budget_);
   }
 
@@ -82,6 +84,27 @@ TEST_F(Tracking, BlackImagesLeaveThePredictionAndAreSaidToBeALoss) {
   EXPECT_TRUE(recovered);
   EXPECT_EQ(see(X_WR).state, TrackState::kTracking);
   EXPECT_LT(geometry::step_between(X_WR * X_RC_, tracker_.now().X_WC).head<3>().norm(), 0.02);
+}
+
+// A good image that shows nothing of the map, as before a bare wall, is no failure: the pose is carried until that has made it too uncertain.
+TEST_F(Tracking, ABareWallIsNoLossUntilThePoseIsTooUncertain) {
+  const Pose X_WR = geometry::pose_on_floor(1.0, 1.6, 0.2);
+  tracker_.start(prior_at(X_WR * X_RC_, kKnown));
+  ASSERT_EQ(see(X_WR).state, TrackState::kTracking);
+  const PoseTrackerParameters parameters;
+  Pose X_R0R1 = Pose::Identity();
+  X_R0R1.translation().x() = 0.02;
+  int images = 0;
+  for (TrackState state = TrackState::kTracking; state == TrackState::kTracking && images < 1000; ++images) {
+    tracker_.moved(X_R0R1);
+    const TrackedPose& now = see_grey();
+    ASSERT_EQ(now.correction.reason, Reason::kTooFewEdges);
+    state = now.state;
+  }
+  EXPECT_GT(images, 3 * parameters.lost_after);
+  const geometry::Matrix6d& covariance = tracker_.now().covariance;
+  const double place = std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
+  EXPECT_TRUE(place > parameters.lost_m || std::sqrt(covariance(5, 5)) > parameters.lost_deg * kDegree);
 }
 
 // A camera that the last image saw lean to one side, as one does whose mount is told wrong, is upright again for the next one: and stays where it

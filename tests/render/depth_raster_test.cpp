@@ -84,6 +84,24 @@ TEST(DepthRaster, ACubeShowsNineOfItsTwelveEdges) {
   }
 }
 
+TEST(DepthRaster, SaysWhereTheMapIs) {
+  Map map;
+  add_box(map, {-0.5F, -0.5F, 0.0F}, {0.5F, 0.5F, 1.0F});
+  const Camera camera;
+  const Pose X_WC = looking_from({3.0, 2.0, 2.0}, {0.0, 0.0, 0.5});
+  DepthRaster raster(map, {});
+  std::vector<VisiblePiece> pieces;
+  raster.look(X_WC, camera, pieces);
+  const auto covered = [&](const Vector3d& p_W) {
+    const auto at = camera.without_distortion().pixel_of(X_WC.inverse() * p_W);
+    return at && raster.covers(at->cast<float>());
+  };
+  EXPECT_TRUE(covered({0.0, 0.0, 0.98}));
+  EXPECT_TRUE(covered({0.49, 0.0, 0.5}));
+  EXPECT_FALSE(covered({0.0, 0.0, 1.4}));
+  EXPECT_FALSE(covered({0.0, 0.9, 0.0}));
+}
+
 TEST(DepthRaster, PiecesEndWhereSomethingStandsBefore) {
   Map map;
   add_rectangle(map, {4.0F, 2.0F, 1.0F}, {0.0F, -4.0F, 0.0F},
