@@ -23,6 +23,7 @@ function(cgsr_precompile)
       set(from cgsr_precompiled_test)
     endif()
     if(NOT pic AND standard EQUAL CMAKE_CXX_STANDARD AND type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT target MATCHES "^cgsr_precompiled")
+      target_link_libraries(${target} PRIVATE fmt::fmt)  # whose definitions the precompiled header saw
       target_precompile_headers(${target} REUSE_FROM ${from})
       # g++ 12 warns of its own std::string once its headers are not read in place. The release without this warns where it should.
       target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
