@@ -18,6 +18,7 @@ constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
 constexpr double kLeastNoise = 0.3;  // of the stated noise
 
+constexpr double kCloseBy = 0.2;    // of a map's size: no further off it is the camera's surroundings
 constexpr float kBeside_px = 2.0F;  // of a line, what lies on either side of it
 
 }  // namespace
@@ -39,6 +40,11 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
       matcher_(static_cast<std::size_t>(parameters.pieces_most), most_perceived) {
   visible_.reserve(static_cast<std::size_t>(parameters.pieces_most));
   lines_.reserve(static_cast<std::size_t>(parameters.pieces_most) * 4);
+  for (const Eigen::Vector3f& vertex : map.vertices) bounds_.extend(vertex.cast<double>());
+  // A low field is stood on, not in.
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kCloseBy * bounds_.diagonal().norm());
+  bounds_.min() -= margin;
+  bounds_.max() += margin;
 }
 
 void Alternation::look(const geometry::Pose& X_WC) {
@@ -103,8 +109,9 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
   }
 }
 
-// Of all that was perceived, each by its weight, what lies on the map as it was looked at last or borders on it.
-float Alternation::length_on_map(const SegmentTable& perceived) const {
+// Of all that was perceived, each by its weight; from outside of the map what lies on it, as it was looked at last, or borders on it.
+float Alternation::length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const {
+  if (bounds_.contains(X_WC.translation())) return perceived.whole_length();
   float length = 0.0F;
   for (const PerceivedEdge& edge : perceived.edges()) {
     const Eigen::Vector2f aside = kBeside_px * edge.normal();
@@ -115,7 +122,8 @@ float Alternation::length_on_map(const SegmentTable& perceived) const {
   return length;
 }
 
-void Alternation::judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const {
+void Alternation::judge(std::span<const Match> matches, const SegmentTable& perceived, const geometry::Pose& X_WC,
+                        Estimate& estimate) const {
   float expected = 0.0F;
   for (const ProjectedPiece& piece : view_.projected()) expected += 2.0F * piece.half_length * piece.weight;
   float found = 0.0F;
@@ -129,7 +137,7 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
   const float both = expected + perceived.whole_length();
   estimate.explained = expected > 0.0F ? std::min(1.0F, found / expected) : 0.0F;
   estimate.agreement = both > 0.0F ? std::min(1.0F, (found + foreseen) / both) : 0.0F;
-  const float on_map = expected + length_on_map(perceived);
+  const float on_map = expected + length_on_map(perceived, X_WC);
   estimate.agreement_on_map = on_map > 0.0F ? std::min(1.0F, (found + foreseen) / on_map) : 0.0F;
 }
 
@@ -168,7 +176,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     ++estimate.rounds;
     estimate.expected = static_cast<int>(view_.projected().size());
     estimate.matches = static_cast<int>(matches.size());
-    judge(matches, perceived, estimate);
+    judge(matches, perceived, X_WC, estimate);
     if (!solution.solved) break;
     estimate.solved = true;
     estimate.solution = solution;

@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/matching.h"
@@ -34,7 +36,8 @@ struct Estimate {
   /// How much of what is expected was perceived and of what was perceived is expected, 0..1: a pose that expects next to nothing is not right
   /// because it finds that, nor one that expects an edge everywhere.
   float agreement = 0.0F;
-  /// The same of what was perceived where the map shows something: of a map that is a single thing, what stands about it says nothing.
+  /// The same; but seen from outside of the map, which is then a thing and not the surroundings, only what was perceived on it counts: what stands
+  /// about it says nothing.
   float agreement_on_map = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;
@@ -75,10 +78,12 @@ class Alternation {
 
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
-  [[nodiscard]] float length_on_map(const SegmentTable& perceived) const;
-  void judge(std::span<const Match> matches, const SegmentTable& perceived, Estimate& estimate) const;
+  [[nodiscard]] float length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const;
+  void judge(std::span<const Match> matches, const SegmentTable& perceived, const geometry::Pose& X_WC,
+             Estimate& estimate) const;
 
   LocalizerParameters parameters_;
+  Eigen::AlignedBox3d bounds_;  ///< of the map and what is close by.
   render::Expectation* expectation_;
   geometry::Camera camera_;
   ExpectedView view_;
