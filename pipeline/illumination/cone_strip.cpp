@@ -7,14 +7,13 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "pipeline/illumination/lane_sums.h"
+
 namespace cgsr::illumination {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Lane = Eigen::Array4f;
-
-constexpr int kLane = 4;
 
 constexpr double kBlur_px = 0.45;        // of lens, pixel and reading between pixels
 constexpr double kStep_m = 0.0025;       // between places along the outline
@@ -173,12 +172,8 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
   }
   const Eigen::Matrix<float, kUnknowns, 1> f = x.cast<float>();
   const auto end = static_cast<float>(kPlaces * kStep_m);
-  constexpr std::size_t kResidual = kUnknowns;
-  std::array<std::array<Lane, kUnknowns + 1>, kUnknowns> table;
-  for (auto& row : table) row.fill(Lane::Zero());
-  Lane squares = Lane::Zero();
-  Lane weights = Lane::Zero();
-  std::array<Lane, kUnknowns + 1> j;
+  LaneSums<kUnknowns> table;
+  LaneSums<kUnknowns>::Row j;
   for (int i = 0; i < count; i += kLane * every) {
     Lane along;
     Lane out;
@@ -233,26 +228,12 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
     j[kEdge] = -(board - cone) * edge_density / blur_m_;
     j[kEdgeSlope] = j[kEdge] * along / end;
     const Lane residual = value - (cone + (board - cone) * w);
-    j[kResidual] = residual;
+    j[LaneSums<kUnknowns>::kResidual] = residual;
     const Lane scale = (residual < 0.0F).select(Lane::Constant(kScale), darker_counts ? kScale : 2.0F * kScale);
     const Lane relative = residual / scale;
-    const Lane robust = there / (1.0F + relative * relative);
-    for (std::size_t a = 0; a < kUnknowns; ++a) {
-      const Lane weighted = robust * j[a];
-      for (std::size_t b = a; b <= kResidual; ++b) table[a][b] += weighted * j[b];
-    }
-    squares += robust * residual * residual;
-    weights += robust;
+    table.add(j, there / (1.0F + relative * relative));
   }
-  for (int a = 0; a < kUnknowns; ++a) {
-    const auto& row = table[static_cast<std::size_t>(a)];
-    for (int b = a; b < kUnknowns; ++b) {
-      sums.H(a, b) = sums.H(b, a) = static_cast<double>(row[static_cast<std::size_t>(b)].sum());
-    }
-    sums.g[a] = static_cast<double>(row[kResidual].sum());
-  }
-  sums.squares = static_cast<double>(squares.sum());
-  sums.weights = static_cast<double>(weights.sum());
+  table.put_into(sums);
   return sums;
 }
 

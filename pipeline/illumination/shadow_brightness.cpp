@@ -4,12 +4,10 @@
 #include <cmath>
 
 #include "pipeline/illumination/board.h"
+#include "pipeline/illumination/lane_sums.h"
 
 namespace cgsr::illumination {
 namespace {
-
-using Lane = Eigen::Array4f;
-constexpr int kLane = 4;
 
 // Residuals beyond it count less and less: grey levels, and of the contrast.
 constexpr float kLeastScale = 3.0F;
@@ -55,13 +53,9 @@ ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) c
 }
 
 ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
-  constexpr std::size_t kResidual = kShadowUnknowns;
   const float scale = std::max(kLeastScale, kScale * std::abs(dark_));
-  std::array<std::array<Lane, kShadowUnknowns + 1>, kShadowUnknowns> table;
-  for (auto& row : table) row.fill(Lane::Zero());
-  Lane squares = Lane::Zero();
-  Lane weights = Lane::Zero();
-  std::array<Lane, kShadowUnknowns + 1> j;
+  LaneSums<kShadowUnknowns> table;
+  LaneSums<kShadowUnknowns>::Row j;
   j[kLevel] = Lane::Ones();
   for (int i = 0; i < samples.count; i += kLane) {
     const Lane x = Eigen::Map<const Lane, Eigen::Aligned16>(samples.x.data() + i);
@@ -101,27 +95,14 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     j[kSlopeX] = x;
     j[kSlopeY] = y;
     const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * hidden);
-    j[kResidual] = residual;
+    j[LaneSums<kShadowUnknowns>::kResidual] = residual;
     const Lane relative = residual * (1.0F / scale);
     Lane robust = 1.0F / (1.0F + relative * relative);
     for (int k = samples.count - i; k < kLane; ++k) robust[k] = 0.0F;
-    for (std::size_t a = 0; a < kShadowUnknowns; ++a) {
-      const Lane weighted = robust * j[a];
-      for (std::size_t b = a; b <= kResidual; ++b) table[a][b] += weighted * j[b];
-    }
-    squares += robust * residual * residual;
-    weights += robust;
+    table.add(j, robust);
   }
   ShadowSums sums;
-  for (int a = 0; a < kShadowUnknowns; ++a) {
-    const auto& row = table[static_cast<std::size_t>(a)];
-    for (int b = a; b < kShadowUnknowns; ++b) {
-      sums.H(a, b) = sums.H(b, a) = static_cast<double>(row[static_cast<std::size_t>(b)].sum());
-    }
-    sums.g[a] = static_cast<double>(row[kResidual].sum());
-  }
-  sums.squares = static_cast<double>(squares.sum());
-  sums.weights = static_cast<double>(weights.sum());
+  table.put_into(sums);
   return sums;
 }
 
