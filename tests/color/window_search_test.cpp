@@ -8,6 +8,7 @@
 #include "pipeline/color/exhaustive_search.h"
 #include "tests/color/scene.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/counted_budget.h"
 
 namespace cgsr::color {
 
@@ -196,15 +197,6 @@ TEST(WindowSearch, APriorIsNoCage) {
   EXPECT_NEAR(found_with(true, 258), right.x, 6);
   EXPECT_NEAR(found_with(false, 58), right.x, 6);
 }
-
-class CountedBudget final : public WorkBudget {
- public:
-  explicit CountedBudget(int units) : left_(units) {}
-  bool grant() override { return left_-- > 0; }
-
- private:
-  int left_;
-};
 
 // However little it may do, it says so, and gets better with more; with enough it is exact.
 TEST(WindowSearch, ABudgetEndsItHonestly) {

@@ -9,6 +9,7 @@
 #include "tests/localization/random_numbers.h"
 #include "tests/localization/small_room.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/counted_budget.h"
 
 namespace cgsr::localization {
 namespace {
@@ -151,15 +152,6 @@ TEST(Localizer, SearchesOverImagesOfAMovingCamera) {
   EXPECT_GT(images, 3);
   EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.02);
 }
-
-class CountedBudget final : public WorkBudget {
- public:
-  explicit CountedBudget(int units) : left_(units) {}
-  bool grant() override { return left_-- > 0; }
-
- private:
-  int left_;
-};
 
 // Whatever the search still has to do, an image's looks at the map are bounded by what it is granted.
 TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
