@@ -222,7 +222,12 @@ int main(int argc, char** argv) {
   CLI::App* shade_command = app.add_subcommand("shade", "look for shaded regions in the home, for tools/count");
   shade_command->add_option("--seed", shade_seed);
   shade_command->add_option("--views", shade_views)->check(CLI::Range(1, 10000));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& wrong) {
+    constexpr int kUsage = 2;
+    return app.exit(wrong) == 0 ? 0 : kUsage;
+  }
 
   try {
     if (*follow_command) return follow_film(film_options);
