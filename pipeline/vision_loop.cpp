@@ -10,7 +10,11 @@ behavior::LampBelief belief_in(const LampSight& sight, const ShadeSight& shade) 
   using illumination::ObservationStatus;
   behavior::LampBelief belief;
   belief.has_board = sight.has_board;
-  belief.readable = sight.observation == ObservationStatus::kSeen || sight.observation == ObservationStatus::kNoShadow;
+  const bool registered =
+      sight.observation == ObservationStatus::kSeen || sight.observation == ObservationStatus::kNoShadow;
+  belief.readable = sight.switching() || (registered && !sight.cone_missing);
+  belief.probes_check = sight.probes_check.state;
+  belief.lamp_proof = sight.lamp_proof.state;
   belief.seen = sight.seen.status == illumination::LampStatus::kFound;
   belief.masked = shade.status == ShadeStatus::kMasked;
   belief.known = sight.known;
@@ -29,9 +33,10 @@ constexpr Duration kPoseKeeps = seconds(0.5);  // a pose that no stage renewed f
 Decision VisionLoop::on_image(const ImageLease& image) {
   const auto& view = runner_.run(decode_, image);
   const auto& where = runner_.run(localize_, image, view);  // where am I: chapter 4, glCorrect
-  const auto& lamp = runner_.run(probes_, image, where);    // where is the lamp: Alg. 5.1, Eq. 5.1 and 5.2
-  const auto& shade = runner_.run(shade_, where, lamp);     // what lies in its shadow: 5.2
-  const auto& matches = runner_.run(search_, view);         // where is the object: chapter 3, Alg. 3.2
+  const auto& lamp =
+      runner_.run(probes_, image, where);  // where is the lamp: Alg. 5.1, Eq. 5.1 and 5.2, by switching too
+  const auto& shade = runner_.run(shade_, where, lamp);                   // what lies in its shadow: 5.2
+  const auto& matches = runner_.run(search_, view);                       // where is the object: chapter 3, Alg. 3.2
   const auto& object = runner_.run(track_, image, view, matches, shade);  // and 5.3
   return runner_.run(decide_, image, object, where, lamp, shade);
 }
@@ -88,10 +93,17 @@ Whereabouts VisionLoop::localize(WorkBudget& budget, const ImageLease& image, co
 
 LampSight VisionLoop::probes(const ImageLease& image, const runtime::Aged<Whereabouts>& where) {
   if (!parts_.lamp) return {};
-  if (!where.value.known() || where.age > Duration::zero()) return parts_.lamp->look(image.view(), nullptr);
-  const auto& camera = where.value.camera;
-  const PlacedRobot robot = robot_of(camera.X_WC, camera.covariance, parts_.where->X_CR());
-  return parts_.lamp->look(image.view(), &robot);
+  using illumination::CheckedLamp;
+  Switchboard& board = parts_.switchboard;
+  const CheckedLines lines{board.state(LampLine::kProbeLamp, image.stamp()),
+                           board.state(LampLine::kRoomLamp, image.stamp())};
+  PlacedRobot robot;
+  const bool placed = where.value.known() && where.age == Duration::zero();
+  if (placed) robot = robot_of(where.value.camera.X_WC, where.value.camera.covariance, parts_.where->X_CR());
+  const LampSight sight = parts_.lamp->look(image.view(), placed ? &robot : nullptr, lines);
+  board.want(LampLine::kProbeLamp, parts_.lamp->wants_on(CheckedLamp::kProbeLamp));
+  board.want(LampLine::kRoomLamp, parts_.lamp->wants_on(CheckedLamp::kRoomLamp));
+  return sight;
 }
 
 ShadeSight VisionLoop::shade(const runtime::Aged<Whereabouts>& where, const LampSight& lamp) {
@@ -144,6 +156,7 @@ Decision VisionLoop::decide(const ImageLease& image, const runtime::Aged<Found>&
     decision.seek = parts_.seek->decide(here, belief_in(lamp.value, shade), elapsed);
     decision.goal = decision.seek.goal;
     decision.halt = decision.seek.halt;
+    if (parts_.lamp && decision.seek.make_sure) parts_.lamp->make_sure(*decision.seek.make_sure);
     return decision;
   }
   if (parts_.route) {

@@ -11,6 +11,7 @@
 #include "pipeline/color/tracker.h"
 #include "pipeline/imaging/reduce.h"
 #include "pipeline/runtime/stage.h"
+#include "pipeline/switchboard.h"
 #include "pipeline/what_is_shaded.h"
 #include "pipeline/where_am_i.h"
 #include "pipeline/where_is_the_lamp.h"
@@ -74,6 +75,7 @@ struct VisionParts {
   std::unique_ptr<WhereAmI> where = nullptr;                    ///< chapter 4.
   std::unique_ptr<WhereIsTheLamp> lamp = nullptr;               ///< chapter 5: the probes on the robot.
   std::unique_ptr<WhatIsShaded> shade = nullptr;                ///< chapter 5: the masks; not without `where`.
+  Switchboard switchboard{};                                    ///< lamps that may be switched; by default none.
   std::optional<behavior::Route> route = std::nullopt;          ///< the task is to drive it,
   std::optional<behavior::SeekLamp> seek = std::nullopt;        ///< or Alg. 5.2; without either, to follow the object.
 };
@@ -94,6 +96,10 @@ class VisionLoop {
 
   /// What the base reported; to be told before the image that is exposed about then.
   void heard(const hal::Odometry& odometry);
+  /// What became of a switching; to be told before the next image.
+  void heard(const SwitchAnswer& answer) { parts_.switchboard.heard(answer); }
+  /// \return the next switching that the last image led to; to be asked until there is none.
+  std::optional<SwitchRequest> next_switching() { return parts_.switchboard.next(last_image_); }
 
   /// Image in, decision out. Valid between the runner's begin_frame and end_frame.
   Decision on_image(const ImageLease& image);

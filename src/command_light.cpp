@@ -48,8 +48,10 @@ void add_light_command(CLI::App& app, int& exit_code) {
       "--mount", options->mount,
       "robot.toml of cgsr calibrate or cgsr sim export, instead of the configuration's [mount] and board");
   command->add_option("--input", options->input, "video, image folder or image")->required();
-  command->add_option("--pose", options->pose,
-                      "CSV with the robot's pose for each image: lamps are kept in the world's frame as well");
+  command->add_option(
+      "--pose", options->pose,
+      "CSV with the robot's pose for each image: lamps are kept in the world's frame as well; columns sigma_m and "
+      "sigma_deg may say how well it is known, at the least as [lamp].pose_sigma_m and _deg");
   command->add_option(
       "--csv", options->csv,
       "write a row for each lamp of each image: robot frame, or the world's where --pose says where the robot was");

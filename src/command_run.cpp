@@ -65,6 +65,7 @@ int run_robot(const Options& options) {
   auto robot = robot::Robot::build(*config, options.run);
   if (!robot) return report(robot.error());
   for (const std::string& note : (*robot)->notes()) spdlog::info("camera: {}", note);
+  for (const std::string& problem : (*robot)->problems()) spdlog::error("{}", problem);
   spdlog::info("schedule:\n{}", runtime::to_text((*robot)->schedule()));
 
   if (auto done = (*robot)->run(stop); !done) return report(done.error());

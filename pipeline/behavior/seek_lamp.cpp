@@ -10,6 +10,9 @@
 namespace cgsr::behavior {
 namespace {
 
+using illumination::CheckedLamp;
+using illumination::CheckState;
+
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kWorthGoing_m = 0.15;  // a shorter way is none
@@ -17,6 +20,8 @@ constexpr double kHold_s = 0.8;         // for a shadow to become sure
 constexpr double kTired_s = 2.0;        // before another one is stood still for
 constexpr double kLampGone_s = 2.0;
 constexpr int kHeadings = 24;
+constexpr double kCalm_s = 1.0;       // until a base that stopped does not rock any more
+constexpr double kCheckMost_s = 8.0;  // a check that is not over by then never will be
 
 double bearing_of(const FloorBelief& here, const Place& place) {
   return std::remainder(std::atan2(place.y_m - here.y_m, place.x_m - here.x_m) - here.heading_rad, kTurn);
@@ -28,7 +33,7 @@ double way_between(const FloorBelief& here, const Place& place) {
 
 bool moves(SeekState state) {
   return state == SeekState::kExploring || state == SeekState::kApproaching || state == SeekState::kLocating ||
-         state == SeekState::kBackingOff;
+         state == SeekState::kProving || state == SeekState::kBackingOff;
 }
 
 }  // namespace
@@ -37,12 +42,16 @@ std::string_view text(SeekState state) {
   switch (state) {
     case SeekState::kWaiting:
       return "waiting";
+    case SeekState::kChecking:
+      return "checking the probes";
     case SeekState::kExploring:
       return "exploring";
     case SeekState::kApproaching:
       return "approaching the lamp";
     case SeekState::kLocating:
       return "locating the lamp";
+    case SeekState::kProving:
+      return "proving the lamp";
     case SeekState::kBackingOff:
       return "backing off";
     case SeekState::kShading:
@@ -91,6 +100,20 @@ std::string_view text(SeekReason reason) {
       return "the probe board cannot be read";
     case SeekReason::kPoseLost:
       return "where it is is not known any more";
+    case SeekReason::kNoPose:
+      return "where it is is not known";
+    case SeekReason::kProbesAgree:
+      return "the probes are as calibrated";
+    case SeekReason::kProbesDoubted:
+      return "the probes failed their check";
+    case SeekReason::kLampProven:
+      return "the shadows are the room lamp's";
+    case SeekReason::kOtherShadow:
+      return "the shadows are not the room lamp's";
+    case SeekReason::kSwitchFault:
+      return "a lamp does not switch";
+    case SeekReason::kNoCheck:
+      return "no check in time";
   }
   return "unknown";
 }
@@ -118,8 +141,8 @@ SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, D
 
   SeekDecision decision;
   if (moves(state_) && without_pose_s_ > parameters_.pose_lost_s) go_on(SeekState::kStopped, SeekReason::kPoseLost);
-  const bool needs_board =
-      state_ == SeekState::kExploring || state_ == SeekState::kApproaching || state_ == SeekState::kLocating;
+  const bool needs_board = state_ == SeekState::kWaiting || state_ == SeekState::kExploring ||
+                           state_ == SeekState::kApproaching || state_ == SeekState::kLocating;
   if (needs_board && unreadable_s_ > parameters_.probes_lost_s) {
     go_on(SeekState::kAmbient, SeekReason::kBoardUnreadable);
   }
@@ -136,6 +159,13 @@ SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, D
   decision.goal = goal_;
   decision.state = state_;
   decision.reason = reason_;
+  if (in_state_s_ >= kCalm_s) {
+    if (state_ == SeekState::kChecking && lamp.probes_check == CheckState::kOpen) {
+      decision.make_sure = CheckedLamp::kProbeLamp;
+    } else if (state_ == SeekState::kProving && lamp.lamp_proof == CheckState::kOpen) {
+      decision.make_sure = CheckedLamp::kRoomLamp;
+    }
+  }
   decision.places = visits_;
   return decision;
 }
@@ -146,10 +176,13 @@ Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
       if (!lamp.has_board) {
         go_on(SeekState::kAmbient, SeekReason::kNoBoard);
       } else if (here.known) {
-        start_ = here;
-        last_heading_rad_ = here.heading_rad;
-        go_on(SeekState::kExploring, SeekReason::kPoseKnown);
+        begin(here, lamp);
+      } else if (without_pose_s_ > parameters_.pose_lost_s) {
+        go_on(SeekState::kAmbient, SeekReason::kNoPose);
       }
+      return {};
+    case SeekState::kChecking:
+      check(lamp.probes_check);
       return {};
     case SeekState::kExploring:
       return explore(here, lamp);
@@ -157,6 +190,9 @@ Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
       return approach(here, lamp);
     case SeekState::kLocating:
       return locate(here, lamp);
+    case SeekState::kProving:
+      prove(lamp);
+      return {};
     case SeekState::kBackingOff:
       return back_off(here, lamp);
     case SeekState::kShading:
@@ -164,12 +200,24 @@ Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
     case SeekState::kTracking:
     case SeekState::kStopped:
       return {};
-    case SeekState::kAmbient:  // somebody switched it on
-      if (lamp.has_board && lamp.known && here.known) go_on(SeekState::kLocating, SeekReason::kShadowSeen);
+    case SeekState::kAmbient:
+      if (reason_ == SeekReason::kNoPose && here.known) {
+        begin(here, lamp);
+        return {};
+      }
+      // Somebody switched it on.
+      if (lamp.has_board && lamp.readable && lamp.known && here.known)
+        go_on(SeekState::kLocating, SeekReason::kShadowSeen);
       middle_rad_ = here.heading_rad;
       return {};
   }
   return {};
+}
+
+void SeekLamp::begin(const FloorBelief& here, const LampBelief& lamp) {
+  start_ = here;
+  last_heading_rad_ = here.heading_rad;
+  go_on(lamp.probes_check == CheckState::kOpen ? SeekState::kChecking : SeekState::kExploring, SeekReason::kPoseKnown);
 }
 
 Velocity SeekLamp::explore(const FloorBelief& here, const LampBelief& lamp) {
@@ -259,11 +307,11 @@ Velocity SeekLamp::locate(const FloorBelief& here, const LampBelief& lamp) {
   }
   const bool good = lamp.known && lamp.sigma_m <= parameters_.good_sigma_m;
   if (good && in_state_s_ >= parameters_.locate_least_s) {
-    go_on(SeekState::kBackingOff, SeekReason::kLampKnown);
+    measured(lamp, SeekReason::kLampKnown);
     return {};
   }
   if (in_state_s_ >= parameters_.locate_most_s) {
-    go_on(SeekState::kBackingOff, SeekReason::kTimeIsUp);
+    measured(lamp, SeekReason::kTimeIsUp);
     return {};
   }
   bool there = false;
@@ -271,6 +319,36 @@ Velocity SeekLamp::locate(const FloorBelief& here, const LampBelief& lamp) {
   const Velocity turn = facing(here, middle_rad_ + (to_the_left_ ? aside : -aside), there);
   if (there) to_the_left_ = !to_the_left_;
   return turn;
+}
+
+void SeekLamp::measured(const LampBelief& lamp, SeekReason reason) {
+  go_on(lamp.lamp_proof == CheckState::kOpen ? SeekState::kProving : SeekState::kBackingOff, reason);
+}
+
+void SeekLamp::check(CheckState state) {
+  if (state == CheckState::kPassed) {
+    go_on(SeekState::kExploring, SeekReason::kProbesAgree);
+  } else if (state == CheckState::kFailed) {
+    go_on(SeekState::kAmbient, SeekReason::kProbesDoubted);
+  } else if (state == CheckState::kFault) {
+    go_on(SeekState::kAmbient, SeekReason::kSwitchFault);
+  } else if (in_state_s_ > kCheckMost_s) {
+    go_on(SeekState::kAmbient, SeekReason::kNoCheck);
+  }
+}
+
+void SeekLamp::prove(const LampBelief& lamp) {
+  if (lamp.lamp_proof == CheckState::kPassed) {
+    go_on(SeekState::kBackingOff, SeekReason::kLampProven);
+  } else if (lamp.lamp_proof == CheckState::kFailed) {
+    go_on(SeekState::kAmbient, SeekReason::kOtherShadow);
+  } else if (lamp.lamp_proof == CheckState::kFault) {
+    go_on(SeekState::kAmbient, SeekReason::kSwitchFault);
+  } else if (unknown_s_ > kLampGone_s) {
+    go_on(SeekState::kExploring, SeekReason::kLampGone);
+  } else if (in_state_s_ > kCheckMost_s) {
+    go_on(SeekState::kAmbient, SeekReason::kNoCheck);
+  }
 }
 
 void SeekLamp::choose_way_back(const FloorBelief& here) {

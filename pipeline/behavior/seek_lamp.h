@@ -3,11 +3,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "pipeline/behavior/free_floor.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/velocity.h"
+#include "pipeline/illumination/active_check.h"
 #include "platform/parameters.h"
 #include "platform/time.h"
 
@@ -90,6 +92,8 @@ struct LampBelief {
   double z_m = 0.0;
   double sigma_m = 0.0;  ///< of its place, the root of the covariance's trace.
   bool masked = false;   ///< there are masks of what lies in its shadow.
+  illumination::CheckState probes_check = illumination::CheckState::kNotThere;  ///< the probes, by their own lamp.
+  illumination::CheckState lamp_proof = illumination::CheckState::kNotThere;    ///< the shadows, by the room's.
 };
 
 /// The probes' place on the robot.
@@ -109,9 +113,11 @@ struct KeptArea {
 
 enum class SeekState : std::uint8_t {
   kWaiting,      ///< where it is is not known yet: stands.
+  kChecking,     ///< stands while the probes' own lamp is switched: are they as calibrated?
   kExploring,    ///< turns and moves until the probes throw a shadow (line 3).
   kApproaching,  ///< goes nearer to a lamp that stands low: a small angle measures better.
   kLocating,     ///< measures the lamp (line 6).
+  kProving,      ///< stands while the room's lamp is switched: are the shadows its shadows?
   kBackingOff,   ///< turns away, drives, turns back: it is blind backwards (line 10).
   kShading,      ///< stands until there are masks (line 11).
   kTracking,     ///< stands and tracks (lines 12 to 14).
@@ -137,6 +143,13 @@ enum class SeekReason : std::uint8_t {
   kNoBoard,
   kBoardUnreadable,
   kPoseLost,
+  kNoPose,
+  kProbesAgree,
+  kProbesDoubted,
+  kLampProven,
+  kOtherShadow,
+  kSwitchFault,
+  kNoCheck,
 };
 std::string_view text(SeekReason reason);
 
@@ -144,8 +157,9 @@ struct SeekDecision {
   Velocity goal;
   bool halt = false;  ///< no ramp.
   SeekState state = SeekState::kWaiting;
-  SeekReason reason = SeekReason::kBegun;  ///< of the last change of state.
-  int places = 0;                          ///< looked around at, while exploring.
+  SeekReason reason = SeekReason::kBegun;              ///< of the last change of state.
+  int places = 0;                                      ///< looked around at, while exploring.
+  std::optional<illumination::CheckedLamp> make_sure;  ///< the lamp that it wants switched now.
 };
 
 /// Algorithm 5.2: explore until the probes throw a shadow, locate the lamp, back off, find the shaded regions, track. It sees no obstacles: its
@@ -174,6 +188,10 @@ class SeekLamp {
   Velocity locate(const FloorBelief& here, const LampBelief& lamp);
   Velocity back_off(const FloorBelief& here, const LampBelief& lamp);
   Velocity shade(const LampBelief& lamp);
+  void begin(const FloorBelief& here, const LampBelief& lamp);
+  void check(illumination::CheckState state);
+  void prove(const LampBelief& lamp);
+  void measured(const LampBelief& lamp, SeekReason reason);
   void choose_next_place(const FloorBelief& here);
   void choose_way_back(const FloorBelief& here);
   [[nodiscard]] double way_m(const FloorBelief& here, double heading_rad, double longest_m) const;

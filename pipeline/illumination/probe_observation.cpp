@@ -4,6 +4,25 @@ namespace cgsr::illumination {
 namespace {
 
 constexpr double kMostSaturated = 0.3;  // of the board's places that were looked at
+constexpr int kAlong = 8;               // of these, where the board's edges are lost in the light
+constexpr int kAcross = 16;
+
+/// \return the share of the board's places, seen from where the mount says, that are as bright as the camera can tell.
+double share_saturated(const Board& board, const LumaView& luma, double brightest) {
+  const BoardView view(board.camera, board.X_BC);
+  int places = 0;
+  int saturated = 0;
+  for (int i = 0; i < kAlong; ++i) {
+    for (int k = 0; k < kAcross; ++k) {
+      const auto pixel =
+          view.pixel({((i + 0.5) / kAlong - 0.5) * board.depth_m, ((k + 0.5) / kAcross - 0.5) * board.width_m, 0.0});
+      if (!pixel.in_front || !luma.holds(pixel.at.x(), pixel.at.y())) continue;
+      ++places;
+      saturated += luma.at(pixel.at.x(), pixel.at.y()) >= brightest ? 1 : 0;
+    }
+  }
+  return places == 0 ? 0.0 : static_cast<double>(saturated) / places;
+}
 
 }  // namespace
 
@@ -48,14 +67,15 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
     observation.registration = register_board(board_, parameters_.registration, luma, last_X_BC_, false);
   }
   has_last_ = observation.registration.good;
+  const double brightest = image.format == PixelFormat::kYuyv ? 233.5 : 253.5;
   if (!observation.registration.good) {
-    observation.status = ObservationStatus::kNotRegistered;
+    observation.status = share_saturated(board_, luma, brightest) > kMostSaturated ? ObservationStatus::kSaturated
+                                                                                   : ObservationStatus::kNotRegistered;
     return observation;
   }
   last_X_BC_ = observation.registration.X_BC;
   int shadows = 0;
   double saturated = 0.0;
-  const double brightest = image.format == PixelFormat::kYuyv ? 233.5 : 253.5;
   for (std::size_t i = 0; i < finders_.size(); ++i) {
     if ((observation.registration.cones & (1 << i)) == 0) {
       observation.missing |= 1 << i;

@@ -35,6 +35,8 @@ std::string_view name_of(SwitchVerdict verdict) {
       return "no image";
     case SwitchVerdict::kNotRegistered:
       return "board and probes not found";
+    case SwitchVerdict::kNoAnswer:
+      return "the switch does not answer";
   }
   return "unknown";
 }

@@ -11,13 +11,14 @@
 namespace cgsr::illumination {
 
 enum class SwitchVerdict : std::uint8_t {
-  kAgrees,        ///< every shadow that the lamp throws falls where board and probes say.
-  kDisagrees,     ///< one does not: a probe stands elsewhere than its calibration says, or the lamp does.
-  kNoShadow,      ///< the lamp makes a difference, and no probe's shadow is in it.
-  kNoDifference,  ///< the images are the same: the lamp did not switch.
-  kMoved,         ///< the camera moved between both images.
-  kNoImage,       ///< one is missing, of another size, or without brightness.
-  kNotRegistered  ///< board and cones are not to be found in the image with the lamp.
+  kAgrees,         ///< every shadow that the lamp throws falls where board and probes say.
+  kDisagrees,      ///< one does not: a probe stands elsewhere than its calibration says, or the lamp does.
+  kNoShadow,       ///< the lamp makes a difference, and no probe's shadow is in it.
+  kNoDifference,   ///< the images are the same: the lamp did not switch.
+  kMoved,          ///< the camera moved between both images.
+  kNoImage,        ///< one is missing, of another size, or without brightness.
+  kNotRegistered,  ///< board and cones are not to be found in the image with the lamp.
+  kNoAnswer,       ///< the lamp's line does not answer: there are no two images.
 };
 std::string_view name_of(SwitchVerdict verdict);
 

@@ -82,11 +82,31 @@ struct Camera {
 
 struct Switches {
   std::string arming_line;
+  std::string probe_lamp_line;
+  std::string room_lamp_line;
+  std::string fill_light_line;
+  double answer_within_s = 0.5;
+  illumination::ProbeLampParameters probe_lamp;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.text("arming_line", self.arming_line,
                "input whose rising edge arms the robot and whose falling edge disarms it; empty: none");
+    visit.text("probe_lamp_line", self.probe_lamp_line,
+               "output that switches the probe board's own lamp; its shadows check board and probes before they are "
+               "trusted; empty: none");
+    visit.text("room_lamp_line", self.room_lamp_line,
+               "output that switches the room's lamp, also beside a switch in the wall: what changes with it is its "
+               "shadow; empty: none");
+    visit.text("fill_light_line", self.fill_light_line, "output that switches a light on faces; empty: none");
+    visit.number("answer_within_s", self.answer_within_s, {0.06, 10.0}, "s",
+                 "a line that has not acknowledged by then counts as one that does not answer");
+    visit.section("probe_lamp", self.probe_lamp, "The probe board's own lamp");
+  }
+
+  /// By LampLine.
+  [[nodiscard]] std::array<std::string, kLampLines> lamps() const {
+    return {probe_lamp_line, room_lamp_line, fill_light_line};
   }
 };
 
@@ -144,6 +164,11 @@ struct Robot {
     }
     if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
       return "localization.map needs localization.camera and localization.mount beside it";
+    }
+    if (probes.board.probes == 0 && !(switches.probe_lamp_line.empty() && switches.room_lamp_line.empty())) {
+      return "switches.probe_lamp_line and room_lamp_line need probes (probes.board.probes): what they change is "
+             "judged "
+             "by the probes' shadows";
     }
     if (camera.source == CameraSource::kSim) {
       return live ? "run.pace = \"live\" does not go with camera.source = \"sim\": lock_step or real_time" : "";

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@ namespace {
 
 constexpr std::size_t kLargest_bytes = 64U << 20U;  // a pose for every image of hours
 constexpr double kFarthest_m = 1e5;
+constexpr double kWidestSigma = 180.0;   // metres or degrees
 constexpr double kUnitTolerance = 1e-3;  // of a quaternion's length: four digits after the point leave less
 constexpr std::array<std::string_view, 7> kNames{"tx", "ty", "tz", "qw", "qx", "qy", "qz"};
 
@@ -46,6 +48,8 @@ struct Header {
   std::size_t cells = 0;
   std::optional<std::size_t> frame;
   std::array<std::size_t, kNames.size()> at{};
+  std::optional<std::size_t> sigma_m;
+  std::optional<std::size_t> sigma_deg;
 };
 
 class PoseReader {
@@ -89,6 +93,8 @@ class PoseReader {
       header.at[i] = *place;
     }
     header.frame = place_of("frame");
+    header.sigma_m = place_of("sigma_m");
+    header.sigma_deg = place_of("sigma_deg");
     header_ = header;
     return {};
   }
@@ -129,7 +135,22 @@ class PoseReader {
     }
     row.X.linear() = q.normalized().toRotationMatrix();
     row.X.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+    if (auto taken = take_sigma(cells, header_->sigma_m, "sigma_m", row.sigma_m); !taken) return taken;
+    if (auto taken = take_sigma(cells, header_->sigma_deg, "sigma_deg", row.sigma_rad); !taken) return taken;
+    if (row.sigma_rad) *row.sigma_rad *= std::numbers::pi / 180.0;
     rows_.push_back(row);
+    return {};
+  }
+
+  /// An empty cell says nothing.
+  [[nodiscard]] Result<void> take_sigma(const std::vector<std::string_view>& cells, std::optional<std::size_t> place,
+                                        std::string_view name, std::optional<double>& sigma) const {
+    if (!place || cells[*place].empty()) return {};
+    double value = 0.0;
+    if (!read_number(cells[*place], value) || !(value >= 0.0 && value <= kWidestSigma)) {
+      return wrong(fmt::format("{} is '{}': expected a number from 0 to {}", name, cells[*place], kWidestSigma));
+    }
+    sigma = value;
     return {};
   }
 

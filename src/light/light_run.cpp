@@ -17,6 +17,18 @@ using illumination::ObservationStatus;
 
 constexpr const char* kColumns = "frame,found,reason,x,y,z,probes,sigma_m";
 
+constexpr std::string_view kConeMissing = "a cone is missing";
+
+/// Of geometry::moved(X_WR, step), where a row states sigmas; else zero: the filter knows no pose better than [lamp].pose_sigma_* says.
+geometry::Matrix6d covariance_of(const PoseRow& pose) {
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  const double place = pose.sigma_m.value_or(0.0);
+  const double turn = pose.sigma_rad.value_or(0.0);
+  covariance.diagonal().head<3>().setConstant(place * place);
+  covariance.diagonal().tail<3>().setConstant(turn * turn);
+  return covariance;
+}
+
 std::string unanswered_row(int frame, std::string_view reason) {
   return fmt::format("{},0,{},,,,,\n", frame, reason);
 }
@@ -60,10 +72,12 @@ Result<bool> LightRun::step() {
   const auto observation = observer_.observe(next.image.view());
   count_stage_end("probes");
   ++causes_[static_cast<std::size_t>(observation.status)];
-  const geometry::Pose* X_WR = pose_of(frame);
+  const PoseRow* pose = pose_of(frame);
+  const geometry::Pose* X_WR = pose != nullptr ? &pose->X : nullptr;
+  without_a_cone_ += observation.missing != 0 ? 1 : 0;
   count_stage_begin();
   const auto lamps = illumination::locate_lamps(observer_.board(), config_.lamp, observation);
-  if (X_WR != nullptr) filter_.update(observation, *X_WR, geometry::Matrix6d::Zero());
+  if (X_WR != nullptr) filter_.update(observation, *X_WR, covariance_of(*pose));
   count_stage_end("lamp");
   count_image_end();
   bool found = false;
@@ -72,22 +86,25 @@ Result<bool> LightRun::step() {
     if (lamp.status != LampStatus::kFound) continue;
     found = true;
     const Eigen::Vector3d p = X_WR != nullptr ? Eigen::Vector3d(*X_WR * lamp.p_RL) : lamp.p_RL;
-    rows_ += fmt::format("{},1,,{:.4f},{:.4f},{:.4f},{},{:.4f}\n", frame, p.x(), p.y(), p.z(),
+    rows_ += fmt::format("{},1,{},{:.4f},{:.4f},{:.4f},{},{:.4f}\n", frame,
+                         observation.missing != 0 ? kConeMissing : "", p.x(), p.y(), p.z(),
                          std::popcount(static_cast<unsigned>(lamp.probes)), std::sqrt(lamp.covariance.trace()));
   }
   if (!found) {
     const bool seen = observation.status == ObservationStatus::kSeen;
-    last_cause_ = seen ? illumination::name_of(lamps.status) : illumination::name_of(observation.status);
+    last_cause_ = observation.missing != 0 && observation.status != ObservationStatus::kSaturated ? kConeMissing
+                  : seen ? illumination::name_of(lamps.status)
+                         : illumination::name_of(observation.status);
     rows_ += unanswered_row(frame, last_cause_);
   }
   answered_ += found ? 1 : 0;
   return true;
 }
 
-const geometry::Pose* LightRun::pose_of(int frame) const {
+const PoseRow* LightRun::pose_of(int frame) const {
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const PoseRow& row = poses_[i];
-    if (row.frame ? *row.frame == frame : static_cast<int>(i) == frame) return &row.X;
+    if (row.frame ? *row.frame == frame : static_cast<int>(i) == frame) return &row;
   }
   return nullptr;
 }
@@ -104,6 +121,7 @@ std::vector<std::string> LightRun::summary() const {
     lines.push_back(
         fmt::format("{:6} images: {}", causes_[cause], illumination::name_of(static_cast<ObservationStatus>(cause))));
   }
+  if (without_a_cone_ > 0) lines.push_back(fmt::format("{:6} images: {}", without_a_cone_, kConeMissing));
   for (int i = 0; i < filter_.count(); ++i) {
     const auto& lamp = filter_.lamp(i);
     if (!lamp.steady) continue;

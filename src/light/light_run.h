@@ -39,8 +39,8 @@ class LightRun {
   [[nodiscard]] std::vector<std::string> summary() const;
 
  private:
-  /// \return the robot's pose of an image; null: nobody said.
-  [[nodiscard]] const geometry::Pose* pose_of(int frame) const;
+  /// \return the row of the robot's pose of an image; null: nobody said.
+  [[nodiscard]] const PoseRow* pose_of(int frame) const;
 
   LightRun(const LightOptions& options, LightSetup setup, std::vector<PoseRow> poses);
 
@@ -51,6 +51,7 @@ class LightRun {
   illumination::ProbeObserver observer_;
   illumination::LampFilter filter_;
   std::vector<int> causes_;  // images by ObservationStatus
+  int without_a_cone_ = 0;   // images in which a probe of the board was not found
   std::string rows_;
   std::string_view last_cause_;
   std::vector<std::string> problems_;

@@ -84,6 +84,7 @@ std::string run_csv_head() {
 
 void HousekeepingTask::step() {
   while (const auto status = links_.motions.pop()) take(*status);
+  while (const auto record = links_.switchings.pop()) take(*record);
   while (const auto report = links_.reports.pop()) take(*report);
 }
 
@@ -169,9 +170,37 @@ void HousekeepingTask::watch_seek(const VisionReport& report) {
   tally_.seek.push_back({seek.state, seek.reason, image, at_s});
 }
 
+void HousekeepingTask::take(const SwitchRecord& record) {
+  const SwitchAnswer& answer = record.answer;
+  tally_.switchings.push_back(record);
+  const auto what =
+      fmt::format("{} {}, asked at {:.3f} s", name_of(answer.request.line), answer.request.on ? "on" : "off",
+                  to_seconds(answer.request.asked_at.time_since_epoch()));
+  if (answer.done) {
+    spdlog::info("switches: {}, done at {:.3f} s", what, to_seconds(answer.at.time_since_epoch()));
+  } else {
+    spdlog::error("switches: {}: {}", what, record.problem.data());
+  }
+}
+
+void HousekeepingTask::watch_check(illumination::CheckedLamp lamp, const illumination::CheckReport& check,
+                                   const runtime::FrameRecord& record) {
+  illumination::CheckState& before = checks_[static_cast<std::size_t>(lamp)];
+  if (check.state == before) return;
+  before = check.state;
+  using illumination::CheckState;
+  if (check.state != CheckState::kPassed && check.state != CheckState::kFailed && check.state != CheckState::kFault)
+    return;
+  tally_.checks.push_back({lamp, check, record.image_sequence, to_seconds(record.stamp.time_since_epoch())});
+  spdlog::info("image {}: check by the {}: {} ({})", record.image_sequence, name_of(lamp), name_of(check.state),
+               name_of(check.verdict));
+}
+
 void HousekeepingTask::watch_light(const VisionReport& report) {
   const LampSight& sight = report.decision.lamp;
   if (!sight.has_board) return;
+  watch_check(illumination::CheckedLamp::kProbeLamp, sight.probes_check, report.record);
+  watch_check(illumination::CheckedLamp::kRoomLamp, sight.lamp_proof, report.record);
   const auto image = report.record.image_sequence;
   const bool fit = sight.observation == illumination::ObservationStatus::kSeen ||
                    sight.observation == illumination::ObservationStatus::kNoShadow;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -46,6 +47,14 @@ struct SeekStep {
   double at_s = 0.0;
 };
 
+/// A check by switching that ended.
+struct CheckEnd {
+  illumination::CheckedLamp lamp = illumination::CheckedLamp::kProbeLamp;
+  illumination::CheckReport report;
+  std::uint64_t image = 0;
+  double at_s = 0.0;
+};
+
 /// What a run came to.
 struct RunTally {
   std::uint64_t frames = 0;
@@ -58,8 +67,10 @@ struct RunTally {
   double fastest_radps = 0.0;
   MotionStatus last_motion;
   Whereabouts last_where;
-  std::vector<SeekStep> seek;  ///< in order; empty where that is not the task.
-  std::string output_problem;  ///< the first file that could not be written; empty: none.
+  std::vector<SeekStep> seek;            ///< in order; empty where that is not the task.
+  std::vector<SwitchRecord> switchings;  ///< of lamps, in order.
+  std::vector<CheckEnd> checks;          ///< by switching, in order.
+  std::string output_problem;            ///< the first file that could not be written; empty: none.
 };
 
 /// Everything that may be slow: files, video, log, sums. Never real-time; what it cannot keep up with is lost and counted.
@@ -101,6 +112,9 @@ class HousekeepingTask {
   void watch_pose(const VisionReport& report);
   void watch_light(const VisionReport& report);
   void watch_seek(const VisionReport& report);
+  void watch_check(illumination::CheckedLamp lamp, const illumination::CheckReport& check,
+                   const runtime::FrameRecord& record);
+  void take(const SwitchRecord& record);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
   void write_row(const VisionReport& report);
   void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,
@@ -123,6 +137,7 @@ class HousekeepingTask {
   bool lamp_known_ = false;
   ShadeStatus shade_ = ShadeStatus::kNoMap;
   bool probes_fit_ = true;
+  std::array<illumination::CheckState, 2> checks_{};  // by CheckedLamp
   config::Sha256 outputs_sum_;
   config::Sha256 inputs_sum_;
 };

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <string>
 
 #include "hal/camera.h"
 #include "pipeline/motion_loop.h"
 #include "pipeline/runtime/frame_record.h"
 #include "pipeline/runtime/motion_stop.h"
+#include "pipeline/switchboard.h"
 #include "pipeline/vision_loop.h"
 #include "platform/image_lease.h"
 #include "platform/ring.h"
@@ -18,6 +21,14 @@ namespace cgsr::robot {
 struct VisionReport {
   Decision decision;
   runtime::FrameRecord record;
+};
+
+/// What the switch worker tells housekeeping about one switching.
+struct SwitchRecord {
+  static constexpr std::size_t kProblemBytes = 96;
+
+  SwitchAnswer answer;
+  std::array<char, kProblemBytes> problem{};  ///< what the line said, cut to fit; empty: nothing.
 };
 
 /// How many images capture could not get, by reason; read by anybody.
@@ -35,6 +46,7 @@ struct Links {
   WakeUp image_came;
   std::atomic<bool> images_ended{false};  ///< the recording is over.
   std::atomic<bool> camera_lost{false};   ///< the device is gone; also when it was told to stop.
+  CaptureCounts capture;
 
   Ring<Goal, 8> goals;  ///< vision -> motion.
   std::atomic<bool> images_in_time{false};
@@ -44,12 +56,14 @@ struct Links {
 
   Ring<ArmRequest, 8> arm_requests;  ///< switch worker -> motion.
 
+  Ring<SwitchRequest, 8> switch_requests;                 ///< vision -> switch worker.
+  Ring<SwitchAnswer, 8> switch_answers;                   ///< switch worker -> vision.
+  Ring<SwitchRecord, 64, Overflow::kDiscard> switchings;  ///< switch worker -> housekeeping.
+
   Ring<VisionReport, 64, Overflow::kDiscard> reports;  ///< vision -> housekeeping.
   Ring<ImageLease, 2, Overflow::kDiscard>
       pictures;  ///< vision -> housekeeping: at most two images are held downstream.
   Ring<MotionStatus, 512, Overflow::kDiscard> motions;  ///< motion -> housekeeping.
-
-  CaptureCounts capture;
 };
 
 }  // namespace cgsr::robot

@@ -1,5 +1,7 @@
 #include "src/robot/robot.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/core.h>
@@ -97,7 +99,9 @@ Result<void> Robot::make_tracker(VisionParts& parts, std::optional<behavior::Lea
   const auto model = learn_or_load();
   if (!model) return tl::unexpected(model.error());
   if (config_.task.kind == config::TaskKind::kLamp) {
-    const double focal_px = 0.5 * (camera_model_->fx_px + camera_model_->fy_px);
+    const Pinhole& pinhole = config_.camera.pinhole;
+    const double focal_px =
+        camera_model_ ? 0.5 * (camera_model_->fx_px + camera_model_->fy_px) : 0.5 * (pinhole.fx_px + pinhole.fy_px);
     auto ball = color::IntegratedTracker::create(*model, config_.integrated, mode_.width_px, mode_.height_px, focal_px);
     if (!ball) return tl::unexpected(ball.error());
     parts.ball.emplace(std::move(*ball));
@@ -119,25 +123,37 @@ Result<void> Robot::read_calibration() {
   const auto X_RC = app::read_mount(known.mount);
   if (!X_RC) return tl::unexpected(X_RC.error());
   if (camera->width_px * mode_.height_px != camera->height_px * mode_.width_px) {
-    return fail(fmt::format("{}: is of a camera with {}x{} px, the images have {}x{}: another camera's file?",
-                            known.camera, camera->width_px, camera->height_px, mode_.width_px, mode_.height_px));
+    return do_without(fmt::format("{}: is of a camera with {}x{} px, the images have {}x{}: another camera's file?",
+                                  known.camera, camera->width_px, camera->height_px, mode_.width_px, mode_.height_px));
   }
   camera_model_ = camera->scaled_to(mode_.width_px, mode_.height_px);
   X_RC_ = *X_RC;
-  if (config_.probes.board.probes == 0) return {};
+  return config_.probes.board.probes == 0 ? Result<void>() : read_board();
+}
+
+/// Algorithm 5.2 can do without knowing lamps: it then tracks without a mask. Any other task is refused.
+Result<void> Robot::do_without(const std::string& problem) {
+  if (config_.task.kind != config::TaskKind::kLamp) return fail(problem);
+  problems_.push_back(problem + "; it tracks without a mask");
+  return {};
+}
+
+Result<void> Robot::read_board() {
   auto board = illumination::make_board(config_.probes.board, X_RC_, *camera_model_);
-  if (!board) return fail(fmt::format("probes.board: {}", board.error().message));
-  if (auto checked = illumination::check_lamp(*board, config_.lamp); !checked) {
-    return fail(fmt::format("lamp: {}", checked.error().message));
-  }
+  if (!board) return do_without(fmt::format("probes.board: {}", board.error().message));
   board_ = *board;
+  if (auto checked = illumination::check_lamp(*board, config_.lamp); !checked) {
+    return do_without(fmt::format("lamp: {}", checked.error().message));
+  }
   return {};
 }
 
 /// The probes, where the robot carries some, and the shadows that follow from their lamp.
 Result<void> Robot::make_light(VisionParts& parts) {
-  if (!board_) return {};
-  parts.lamp = std::make_unique<WhereIsTheLamp>(*board_, config_.probes, config_.lamp);
+  if (!board_ || !problems_.empty()) return {};
+  const config::Switches& switches = config_.switches;
+  const CheckParameters check{!switches.probe_lamp_line.empty(), !switches.room_lamp_line.empty(), switches.probe_lamp};
+  parts.lamp = std::make_unique<WhereIsTheLamp>(*board_, config_.probes, config_.lamp, check);
   notes_.push_back(fmt::format("board with {} probe{}", board_->probes, board_->probes == 1 ? "" : "s"));
   if (parts.where) parts.shade = std::make_unique<WhatIsShaded>(parts.where->map(), *camera_model_, config_.shade);
   return {};
@@ -146,7 +162,7 @@ Result<void> Robot::make_light(VisionParts& parts) {
 /// The map, where the robot has one.
 Result<void> Robot::make_whereabouts(VisionParts& parts) {
   const config::RobotLocalization& known = config_.localization;
-  if (known.map.empty()) return {};
+  if (known.map.empty() || !camera_model_) return {};
   auto map = world::load_map(known.map);
   if (!map) return tl::unexpected(map.error());
   const auto first_image = known.start.marker.id < 0 ? Result<ImageLease>{} : first();
@@ -187,12 +203,16 @@ Result<void> Robot::make_loops() {
   if (config_.task.kind == config::TaskKind::kLamp) {
     const auto& board = config_.probes.board;
     const auto& area = config_.motion.keep_in;
-    parts.seek.emplace(config_.task.lamp,
-                       std::make_shared<behavior::FreeFloor>(parts.where->map(), config_.task.lamp.floor),
-                       behavior::BoardPlace{board.position_m[0], board.position_m[2]},
-                       behavior::KeptArea{area.enabled, area.x_min_m + kAreaMargin_m, area.x_max_m - kAreaMargin_m,
-                                          area.y_min_m + kAreaMargin_m, area.y_max_m - kAreaMargin_m});
+    parts.seek.emplace(
+        config_.task.lamp,
+        parts.where ? std::make_shared<behavior::FreeFloor>(parts.where->map(), config_.task.lamp.floor) : nullptr,
+        behavior::BoardPlace{board.position_m[0], board.position_m[2]},
+        behavior::KeptArea{area.enabled, area.x_min_m + kAreaMargin_m, area.x_max_m - kAreaMargin_m,
+                           area.y_min_m + kAreaMargin_m, area.y_max_m - kAreaMargin_m});
   }
+  std::array<bool, kLampLines> lamps{};
+  std::ranges::transform(config_.switches.lamps(), lamps.begin(), [](const auto& name) { return !name.empty(); });
+  parts.switchboard = Switchboard(lamps, mode_.frame_period, seconds(config_.switches.answer_within_s));
   auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
   if (!schedule) return tl::unexpected(schedule.error());
 
@@ -239,7 +259,8 @@ Result<void> Robot::open_base() {
                                          options_.dry_run ? MotionLoop::Mode::kDryRun : MotionLoop::Mode::kLive);
   if (auto started = motion_->start(); !started) return started;
   switches_ = make_switches();
-  return switches_->start();
+  if (auto started = switches_->start(); !started) return started;
+  return check_lines(*switches_, lines());
 }
 
 std::unique_ptr<hal::Drive> Robot::make_drive() {
@@ -252,6 +273,9 @@ std::unique_ptr<hal::Switches> Robot::make_switches() {
   std::vector<hal::DummyLine> lines;
   if (!config_.switches.arming_line.empty()) {
     lines.push_back({config_.switches.arming_line, hal::LineDirection::kInput, false});
+  }
+  for (const std::string& lamp : config_.switches.lamps()) {
+    if (!lamp.empty()) lines.push_back({lamp, hal::LineDirection::kOutput, false});
   }
   return std::make_unique<hal::DummySwitches>(std::move(lines));
 }

@@ -16,6 +16,7 @@
 #include "src/config/robot.h"
 #include "src/robot/housekeeping_task.h"
 #include "src/robot/links.h"
+#include "src/robot/switch_task.h"
 
 namespace cgsr::robot {
 
@@ -44,6 +45,8 @@ class Robot {
   [[nodiscard]] const config::Robot& config() const { return config_; }
   [[nodiscard]] const hal::CameraMode& camera_mode() const { return mode_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  /// What the robot does without, and why.
+  [[nodiscard]] const std::vector<std::string>& problems() const { return problems_; }
   [[nodiscard]] const runtime::Schedule& schedule() const { return runner_->schedule(); }
   [[nodiscard]] const Links& links() const { return links_; }
   [[nodiscard]] HousekeepingTask& housekeeping() { return *housekeeping_; }
@@ -59,11 +62,14 @@ class Robot {
   Result<void> make_whereabouts(VisionParts& parts);
   Result<void> make_light(VisionParts& parts);
   Result<void> read_calibration();
+  Result<void> read_board();
+  Result<void> do_without(const std::string& problem);
   Result<void> make_loops();
   Result<void> open_outputs();
   Result<void> open_base();
   [[nodiscard]] std::unique_ptr<hal::Drive> make_drive();
   [[nodiscard]] std::unique_ptr<hal::Switches> make_switches();
+  [[nodiscard]] SwitchLines lines() const { return {config_.switches.arming_line, config_.switches.lamps()}; }
 
   void run_lock_step(StopRequest& stop);
   Result<void> leave_pose_for_next_run() const;
@@ -84,6 +90,7 @@ class Robot {
   std::optional<illumination::Board> board_;
   Links links_;
   std::vector<std::string> notes_;
+  std::vector<std::string> problems_;
   std::unique_ptr<runtime::StageRunner> runner_;
   std::unique_ptr<VisionLoop> vision_;
   std::unique_ptr<MotionLoop> motion_;

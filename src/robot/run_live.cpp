@@ -126,7 +126,7 @@ Result<void> Robot::run_live(StopRequest& stop) {
   CaptureTask capture(*camera_, mode_.frame_period, links_);
   VisionTask vision(*vision_, *runner_, real_clock_, mode_.frame_period, links_);
   MotionTask motion(*motion_, stop, Duration::zero(), options_.arm, links_);
-  SwitchTask switches(*switches_, config_.switches.arming_line, links_);
+  SwitchTask switches(*switches_, lines(), real_clock_, links_);
   LiveLoops loops(capture, vision, motion, switches, *housekeeping_, real_clock_, stop, links_);
 
   ThreadTable threads(stop);

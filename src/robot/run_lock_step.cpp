@@ -53,7 +53,7 @@ void Robot::run_lock_step(StopRequest& stop) {
   CaptureTask capture(*camera_, mode_.frame_period, links_);
   VisionTask vision(*vision_, *runner_, stamp_clock_, mode_.frame_period, links_);
   MotionTask motion(*motion_, stop, seconds(config_.run.result_latency_s), options_.arm, links_);
-  SwitchTask switches(*switches_, config_.switches.arming_line, links_);
+  SwitchTask switches(*switches_, lines(), stamp_clock_, links_);
   Beats beats(motion, switches, stamp_clock_, simulation_.get());
   app::Progress progress;
 

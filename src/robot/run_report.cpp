@@ -19,6 +19,9 @@ void visit_rings(const Links& links, Visitor visit) {
   visit("goals", links.goals.statistics());
   visit("odometry", links.odometry.statistics());
   visit("arm_requests", links.arm_requests.statistics());
+  visit("switch_requests", links.switch_requests.statistics());
+  visit("switch_answers", links.switch_answers.statistics());
+  visit("switchings", links.switchings.statistics());
   visit("reports", links.reports.statistics());
   visit("pictures", links.pictures.statistics());
   visit("motions", links.motions.statistics());
@@ -116,6 +119,45 @@ std::string seek_text(const std::vector<SeekStep>& steps) {
   return text + "\n";
 }
 
+Json switches_json(const RunTally& tally) {
+  Json json{{"switchings", Json::array()}, {"checks", Json::array()}};
+  for (const SwitchRecord& record : tally.switchings) {
+    const SwitchRequest& request = record.answer.request;
+    json["switchings"].push_back({{"lamp", name_of(request.line)},
+                                  {"on", request.on},
+                                  {"asked_s", to_seconds(request.asked_at.time_since_epoch())},
+                                  {"answered_s", to_seconds(record.answer.at.time_since_epoch())},
+                                  {"done", record.answer.done},
+                                  {"problem", record.problem.data()}});
+  }
+  for (const CheckEnd& check : tally.checks) {
+    json["checks"].push_back({{"lamp", name_of(check.lamp)},
+                              {"outcome", name_of(check.report.state)},
+                              {"verdict", name_of(check.report.verdict)},
+                              {"pairs", check.report.tries},
+                              {"image", check.image},
+                              {"at_s", check.at_s}});
+  }
+  return json;
+}
+
+std::string switches_text(const RunTally& tally) {
+  std::string text = "lamps switched:\n";
+  for (const SwitchRecord& record : tally.switchings) {
+    const SwitchRequest& request = record.answer.request;
+    text += fmt::format("{:>9.3f} s  {} {}: {}\n", to_seconds(request.asked_at.time_since_epoch()),
+                        name_of(request.line), request.on ? "on" : "off",
+                        record.answer.done
+                            ? fmt::format("done at {:.3f} s", to_seconds(record.answer.at.time_since_epoch()))
+                            : std::string(record.problem.data()));
+  }
+  for (const CheckEnd& check : tally.checks) {
+    text += fmt::format("{:>9.3f} s  check by the {}: {} ({})\n", check.at_s, name_of(check.lamp),
+                        name_of(check.report.state), name_of(check.report.verdict));
+  }
+  return text + "\n";
+}
+
 Json light_json(const LightFigures& light) {
   Json json{{"looks", light.looks}, {"known", light.known}, {"masked", light.masked}};
   json["unanswered"] = Json::object();
@@ -184,6 +226,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   json["inputs_sha256"] = housekeeping.inputs_sha256();
   json["inputs_images"] = tally.pictures;
   json["ended_by"] = ended_by;
+  json["problems"] = robot.problems();
   json["frames"] = {
       {"all", tally.frames}, {"without_image", tally.without_image}, {"late", housekeeping.table().frames().late}};
   json["capture"] = {{"images", capture.images.load()},
@@ -197,6 +240,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   if (const PoseFigures* pose = housekeeping.pose_truth()) json["pose"] = pose_json(*pose);
   if (!tally.seek.empty()) json["task"] = seek_json(tally.seek);
   if (const LightFigures* light = housekeeping.light()) json["light"] = light_json(*light);
+  if (!tally.switchings.empty() || !tally.checks.empty()) json["switches"] = switches_json(tally);
   json["stages"] = stages_json(housekeeping.table());
   visit_rings(robot.links(), [&json](const char* name, const RingStatistics& ring) {
     json["rings"][name] = {{"capacity", ring.capacity},
@@ -221,10 +265,12 @@ std::string summary_text(Robot& robot, const std::string& ended_by) {
       last.odometry.heading_rad);
   text += fmt::format("last command {:+.2f} m/s {:+.2f} rad/s ({})\n\n", last.commanded.forward_mps,
                       last.commanded.left_radps, cgsr::text(last.cause));
+  for (const std::string& problem : robot.problems()) text += fmt::format("problem: {}\n", problem);
   if (const TruthFigures* truth = housekeeping.truth()) text += truth_text(*truth);
   if (const PoseFigures* pose = housekeeping.pose_truth()) text += pose_text(*pose);
   if (!tally.seek.empty()) text += seek_text(tally.seek);
   if (const LightFigures* light = housekeeping.light()) text += light_text(*light);
+  if (!tally.switchings.empty() || !tally.checks.empty()) text += switches_text(tally);
   text += runtime::to_text(housekeeping.table());
   text += "\nring          capacity  high water  pushed  dropped  skipped\n";
   visit_rings(robot.links(), [&text](const char* name, const RingStatistics& ring) {

@@ -9,11 +9,14 @@ bool VisionTask::step() {
   if (!image) return false;
   const MonoTime started = clock_.now();
   while (const auto odometry = links_.odometry.pop()) loop_.heard(*odometry);
+  while (const auto answer = links_.switch_answers.pop()) loop_.heard(*answer);
   runner_.begin_frame({image->stamp(), image->sequence(), true});
   const Decision decision = loop_.on_image(*image);
   // A goal that finds no room is lost: the newest one is what counts, and without any the dead-man stops the robot.
   static_cast<void>(
       links_.goals.push(Goal{{decision.goal.forward_mps, decision.goal.left_radps}, image->stamp(), decision.halt}));
+  // A request that finds no room gets no answer, and the line counts as silent.
+  while (auto request = loop_.next_switching()) static_cast<void>(links_.switch_requests.push(std::move(*request)));
   in_time_.dealt_with(image->sequence(), started, clock_.now());
   links_.images_in_time.store(in_time_.enough(), std::memory_order_relaxed);
   report(decision, std::move(*image));

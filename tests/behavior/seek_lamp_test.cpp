@@ -9,6 +9,8 @@
 namespace cgsr::behavior {
 namespace {
 
+using illumination::CheckState;
+
 constexpr Duration kImagePeriod = seconds(1.0 / 30.0);
 constexpr double kDegree = std::numbers::pi / 180.0;
 
@@ -60,6 +62,8 @@ class Seek : public ::testing::Test {
     lamp.z_m = 2.75;
     lamp.sigma_m = 0.03;
     lamp.masked = lamp.known && masks_;
+    lamp.probes_check = probes_check_;
+    lamp.lamp_proof = lamp_proof_;
     return lamp;
   }
 
@@ -100,6 +104,8 @@ class Seek : public ::testing::Test {
   bool readable_ = true;
   bool masks_ = true;
   bool known_ = false;
+  illumination::CheckState probes_check_ = illumination::CheckState::kNotThere;
+  illumination::CheckState lamp_proof_ = illumination::CheckState::kNotThere;
   int seen_ = 0;
   SeekDecision decision_;
   std::vector<SeekState> states_;
@@ -201,6 +207,67 @@ TEST_F(Seek, ALampThatGoesOutIsLookedForAnew) {
   burns_ = false;
   ASSERT_TRUE(run_until(SeekState::kExploring, 5.0));
   EXPECT_EQ(decision_.reason, SeekReason::kLampGone);
+}
+
+TEST_F(Seek, ChecksTheProbesAndProvesTheLampWhileItStands) {
+  probes_check_ = lamp_proof_ = CheckState::kOpen;
+  make();
+  ASSERT_TRUE(run_until(SeekState::kChecking, 1.0));
+  run(0.5);
+  EXPECT_EQ(decision_.make_sure, std::nullopt) << "the base still rocks";
+  run(0.6);
+  EXPECT_EQ(decision_.make_sure, illumination::CheckedLamp::kProbeLamp);
+  EXPECT_EQ(decision_.goal.left_radps, 0.0);
+  probes_check_ = CheckState::kRunning;
+  image();
+  EXPECT_EQ(decision_.make_sure, std::nullopt);
+  probes_check_ = CheckState::kPassed;
+  image();
+  EXPECT_EQ(decision_.state, SeekState::kExploring);
+  EXPECT_EQ(decision_.reason, SeekReason::kProbesAgree);
+  ASSERT_TRUE(run_until(SeekState::kProving, 180.0));
+  EXPECT_EQ(decision_.reason, SeekReason::kLampKnown);
+  run(1.5);
+  EXPECT_EQ(decision_.make_sure, illumination::CheckedLamp::kRoomLamp);
+  EXPECT_EQ(decision_.goal.left_radps, 0.0);
+  lamp_proof_ = CheckState::kPassed;
+  image();
+  EXPECT_EQ(decision_.state, SeekState::kBackingOff);
+  EXPECT_EQ(decision_.reason, SeekReason::kLampProven);
+}
+
+TEST_F(SeekFault, ACheckThatFailsOrCannotBeMadeLeavesAmbientLightAlone) {
+  const auto reason_of = [&](CheckState probes, CheckState proof) {
+    here_ = {true, 1.0, 3.0, 0.0};
+    probes_check_ = CheckState::kOpen;
+    lamp_proof_ = CheckState::kOpen;
+    known_ = false;
+    make();
+    image();
+    probes_check_ = probes;
+    if (probes == CheckState::kPassed) {
+      EXPECT_TRUE(run_until(SeekState::kProving, 180.0));
+      lamp_proof_ = proof;
+    }
+    EXPECT_TRUE(run_until(SeekState::kAmbient, 10.0));
+    return decision_.reason;
+  };
+  EXPECT_EQ(reason_of(CheckState::kFailed, CheckState::kOpen), SeekReason::kProbesDoubted);
+  EXPECT_EQ(reason_of(CheckState::kFault, CheckState::kOpen), SeekReason::kSwitchFault);
+  EXPECT_EQ(reason_of(CheckState::kRunning, CheckState::kOpen), SeekReason::kNoCheck);
+  EXPECT_EQ(reason_of(CheckState::kPassed, CheckState::kFailed), SeekReason::kOtherShadow);
+  EXPECT_EQ(reason_of(CheckState::kPassed, CheckState::kFault), SeekReason::kSwitchFault);
+}
+
+// Without a pose it cannot seek, but it can look.
+TEST_F(SeekFault, WithoutAPoseAtTheStartItTracksWhereItStandsUntilThereIsOne) {
+  here_.known = false;
+  make();
+  ASSERT_TRUE(run_until(SeekState::kAmbient, 30.0));
+  EXPECT_EQ(decision_.reason, SeekReason::kNoPose);
+  here_.known = true;
+  image();
+  EXPECT_EQ(decision_.state, SeekState::kExploring);
 }
 
 TEST_F(SeekFault, WithoutABoardItTracksInAmbientLightAndDoesNotMove) {

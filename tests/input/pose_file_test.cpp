@@ -41,6 +41,17 @@ TEST(PoseFile, NeedsNoFrameColumnAndNoLastLineFeed) {
   EXPECT_FALSE(rows->front().frame);
 }
 
+TEST(PoseFile, TakesHowWellAPoseIsKnownWhereTheFileSaysSo) {
+  const auto rows =
+      parse_poses("tx,ty,tz,qw,qx,qy,qz,sigma_m,sigma_deg\n0,0,1,1,0,0,0,0.02,90\n0,0,1,1,0,0,0,,\n", "poses.csv");
+  ASSERT_TRUE(rows) << rows.error().message;
+  EXPECT_EQ(rows->front().sigma_m, 0.02);
+  EXPECT_NEAR(rows->front().sigma_rad.value_or(0.0), 1.5707963, 1e-6);
+  EXPECT_FALSE(rows->back().sigma_m);
+  EXPECT_FALSE(rows->back().sigma_rad);
+  EXPECT_THAT(refusal("tx,ty,tz,qw,qx,qy,qz,sigma_m\n0,0,1,1,0,0,0,-1\n"), HasSubstr("sigma_m is '-1'"));
+}
+
 TEST(PoseFileProperty, WhatIsWrittenReadsBack) {
   std::mt19937 random(7);
   const auto unit = [&] { return static_cast<double>(random()) / 2147483648.0 - 1.0; };

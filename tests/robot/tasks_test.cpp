@@ -72,7 +72,8 @@ class SwitchTaskOf : public ::testing::Test {
   }
   hal::DummySwitches switches_{{{"arm", hal::LineDirection::kInput, true}}};
   Links links_;
-  SwitchTask task_{switches_, "arm", links_};
+  SimulatedClock clock_;
+  SwitchTask task_{switches_, {"arm", {}}, clock_, links_};
   std::optional<std::string> problem_;
 };
 

@@ -50,6 +50,7 @@ std::string apply(const ScenarioSpec& spec, std::uint32_t seed, const std::files
   std::string problems;
   world.material.insert(world.material.end(), spec.material.begin(), spec.material.end());
   world.ball.insert(world.ball.end(), spec.ball.begin(), spec.ball.end());
+  world.lamp.insert(world.lamp.end(), spec.lamp.begin(), spec.lamp.end());
   if (RobotSpec* robot =
           spec.robot.empty() ? (world.robot.empty() ? nullptr : &world.robot.front()) : named(world.robot, spec.robot);
       robot != nullptr && spec.start.given) {

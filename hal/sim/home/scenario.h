@@ -225,6 +225,7 @@ struct ScenarioSpec {
   std::vector<LineSpec> line;
   std::vector<MaterialSpec> material;
   std::vector<BallSpec> ball;
+  std::vector<LampSpec> lamp;
   std::vector<ActorScriptSpec> actor;
   std::vector<LightScriptSpec> light;
   std::vector<WallSwitchSpec> wall_switch;
@@ -246,6 +247,7 @@ struct ScenarioSpec {
     visit.list("line", self.line, "Lines of the robot's computer");
     visit.list("material", self.material, "Surfaces that the world does not have");
     visit.list("ball", self.ball, "Balls that the world does not have");
+    visit.list("lamp", self.lamp, "Lamps that the world does not have");
     visit.list("actor", self.actor, "What moves otherwise than the world says");
     visit.list("light", self.light, "Lamps that change");
     visit.list("wall_switch", self.wall_switch, "Switches in the wall; off before the first");

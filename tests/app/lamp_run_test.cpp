@@ -1,0 +1,218 @@
+// Algorithm 5.2 where something is wrong or lamps are switched to make sure: the robot's program in the simulated home, images of half the size.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using Changes = std::vector<std::pair<std::string, std::string>>;
+
+/// Writes `to` for the first `from`.
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  ASSERT_NE(at, std::string::npos) << from;
+  text.replace(at, from.size(), to);
+}
+
+class LampRun : public ::testing::Test {
+ protected:
+  /// The lamp robot stands where the living lamp shows on its probes, and may turn from half a second on.
+  LampRun() {
+    scenario_ = "world = \"" CGSR_SOURCE_DIR
+                "/config/worlds/home.toml\"\n"
+                "robot = \"lamp robot\"\n"
+                "start = { given = true, x_m = 4.6, y_m = 3.2 }\n"
+                "camera = { edge_samples = 1 }\n"
+                "line = [{ name = \"arming\", input = true }, { name = \"living lamp\" }, { name = \"probe lamp\" }, "
+                "{ name = \"reading lamp\" }]\n"
+                "wall_switch = [{ lamp_line = \"living lamp\" }]\n"
+                "light = [{ lamp = \"living lamp\", radius_m = 0.05 }]\n"
+                "actor = [{ name = \"cart\", presence = [{ at_s = 0.0, present = false }] }]\n"
+                "lamp = [{ name = \"probe lamp\", carried_by = \"lamp robot\", position_m = [0.3, -0.62, 1.75], "
+                "radius_m = 0.02, visible = false, lumens = 250.0, switch = \"probe lamp\" },\n"
+                "  { name = \"reading lamp\", position_m = [4.2, 1.4, 2.3], radius_m = 0.05, lumens = 700.0, "
+                "switch = \"reading lamp\" }]\n";
+    robot_ = read_text(CGSR_SOURCE_DIR "/config/robots/sim-home-lamp.toml");
+    change({{"\nfx_px = 601.8", "\nfx_px = 300.9"},
+            {"\nfy_px = 579.4", "\nfy_px = 289.7"},
+            {"\ncx_px = 319.5", "\ncx_px = 159.5"},
+            {"\ncy_px = 239.5", "\ncy_px = 119.5"},
+            {"\nwidth_px = 640", "\nwidth_px = 320"},
+            {"\nheight_px = 480", "\nheight_px = 240"},
+            {"\ncache = true", "\ncache = false"},
+            {"\nx_m = 2.2", "\nx_m = 4.6"},
+            {"\ny_m = 3.3", "\ny_m = 3.2"},
+            {"\nlocate_least_s = 3.0", "\nlocate_least_s = 0.3"},
+            {"\nlocate_most_s = 10.0", "\nlocate_most_s = 0.6"},
+            {"\nprobes_lost_s = 4.0", "\nprobes_lost_s = 0.4"},
+            {"../scenarios/home-lamp.toml", scratch_ / "scenario.toml"},
+            {"../models", CGSR_SOURCE_DIR "/config/models"}});
+    for (std::size_t at = 0; (at = robot_.find("\"../", at)) != std::string::npos;) {
+      robot_.replace(at, 4, "\"" CGSR_SOURCE_DIR "/config/");
+    }
+  }
+
+  void change(const Changes& changes) {
+    for (const auto& [from, to] : changes) replace(robot_, from, to);
+  }
+
+  nlohmann::json run(const std::string& duration_s) {
+    write_text(scratch_ / "scenario.toml", scenario_);
+    write_text(scratch_ / "robot.toml", robot_);
+    const auto outcome = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--duration", duration_s, "--arm",
+                                   "--json", scratch_ / "run.json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    errors_ = outcome.errors;
+    return outcome.exit_code == 0 ? nlohmann::json::parse(read_text(scratch_ / "run.json")) : nlohmann::json{};
+  }
+
+  /// It tracks in ambient light, and no image had a mask.
+  static void expect_no_mask(const nlohmann::json& summary, const std::string& reason) {
+    ASSERT_FALSE(summary["task"].empty());
+    EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only") << summary["task"];
+    EXPECT_EQ(summary["task"].back()["reason"], reason);
+    if (summary.contains("light")) {
+      EXPECT_EQ(summary["light"]["known"], 0);
+      EXPECT_EQ(summary["light"]["masked"], 0);
+    }
+  }
+
+  ScratchFolder scratch_;
+  std::string scenario_;
+  std::string robot_;
+  std::string errors_;
+};
+
+using LampRunFault = LampRun;
+
+TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
+  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""},
+          {"room_lamp_line = \"\"", "room_lamp_line = \"living lamp\""}});
+  const auto summary = run("4.5");
+  const auto& checks = summary["switches"]["checks"];
+  ASSERT_EQ(checks.size(), 2U) << summary["switches"];
+  EXPECT_EQ(checks[0]["lamp"], "probe lamp");
+  EXPECT_EQ(checks[0]["outcome"], "passed");
+  EXPECT_EQ(checks[1]["lamp"], "room lamp");
+  EXPECT_EQ(checks[1]["outcome"], "passed");
+  const auto& switchings = summary["switches"]["switchings"];
+  ASSERT_EQ(switchings.size(), 4U);
+  for (const auto& one : switchings) {
+    EXPECT_EQ(one["done"], true);
+    EXPECT_GE(one["answered_s"], one["asked_s"]);
+  }
+  EXPECT_EQ(switchings[3]["on"], false) << "as it was before";
+  EXPECT_GT(summary["light"]["unanswered"]["a lamp is switched"], 0);
+  bool backed_off = false;
+  for (const auto& step : summary["task"])
+    backed_off = backed_off || step["reason"] == "the shadows are the room lamp's";
+  EXPECT_TRUE(backed_off) << summary["task"];
+  EXPECT_EQ(summary["frames"]["late"], 0);
+}
+
+TEST_F(LampRunFault, ALineThatDoesNotAnswerIsNamedAndItTracksWithoutAMask) {
+  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""}});
+  scenario_ += "line_event = [{ what = \"no_answer\", line = \"probe lamp\" }]\n";
+  const auto summary = run("1.8");
+  EXPECT_EQ(summary["switches"]["switchings"][0]["done"], false);
+  EXPECT_THAT(summary["switches"]["switchings"][0]["problem"].get<std::string>(), HasSubstr("'probe lamp'"));
+  EXPECT_EQ(summary["switches"]["checks"][0]["outcome"], "fault");
+  EXPECT_EQ(summary["switches"]["checks"][0]["verdict"], "the switch does not answer");
+  EXPECT_THAT(errors_, HasSubstr("the line does not answer"));
+  EXPECT_EQ(summary["task"].back()["reason"], "a lamp does not switch");
+  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
+}
+
+TEST_F(LampRunFault, ALineThatAnswersAndSwitchesNothingIsNamed) {
+  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""}});
+  scenario_ += "line_event = [{ what = \"stuck\", line = \"probe lamp\" }]\n";
+  const auto summary = run("1.8");
+  EXPECT_EQ(summary["switches"]["checks"][0]["verdict"], "the lamp did not switch");
+  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
+}
+
+// What the line switches is another lamp than the one whose shadows the probes show.
+TEST_F(LampRunFault, AShadowThatStaysIsNotTheRoomLampsAndItTracksWithoutAMask) {
+  change({{"room_lamp_line = \"\"", "room_lamp_line = \"reading lamp\""}});
+  const auto summary = run("3.2");
+  ASSERT_EQ(summary["switches"]["checks"].size(), 1U) << summary["task"];
+  EXPECT_EQ(summary["switches"]["checks"][0]["outcome"], "failed") << summary["switches"];
+  EXPECT_EQ(summary["task"].back()["reason"], "the shadows are not the room lamp's");
+  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
+  EXPECT_GT(summary["light"]["unanswered"]["not the room lamp's shadow"], 0);
+}
+
+TEST_F(LampRunFault, ALineThatTheRobotDoesNotHaveStopsTheStart) {
+  change({{"room_lamp_line = \"\"", "room_lamp_line = \"moon\""}});
+  write_text(scratch_ / "scenario.toml", scenario_);
+  write_text(scratch_ / "robot.toml", robot_);
+  const auto outcome = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--duration", "1"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("there is no line 'moon'"));
+}
+
+TEST_F(LampRunFault, ProbesThatAreNotInView) {
+  replace(scenario_, "robot = \"lamp robot\"", "robot = \"robot\"");
+  const auto summary = run("0.8");
+  expect_no_mask(summary, "the probe board cannot be read");
+  EXPECT_GT(summary["light"]["unanswered"]["board and probes not found"], 0);
+}
+
+TEST_F(LampRunFault, AConeThatIsMissing) {
+  auto world = read_text(CGSR_SOURCE_DIR "/config/worlds/home.toml");
+  replace(world, "has_board = true", "has_board = true\n\n[robot.board]\ncones = 1");
+  write_text(scratch_ / "world.toml", world);
+  replace(scenario_, CGSR_SOURCE_DIR "/config/worlds/home.toml", scratch_ / "world.toml");
+  const auto summary = run("0.8");
+  expect_no_mask(summary, "the probe board cannot be read");
+  EXPECT_GT(summary["light"]["unanswered"]["a cone is missing"], 0);
+}
+
+TEST_F(LampRunFault, ABoardThatIsBrighterThanTheCameraHolds) {
+  replace(scenario_, "radius_m = 0.05 }]",
+          "radius_m = 0.05, script = [{ at_s = 0.0, factor = [40.0, 40.0, 40.0] }] }]");
+  const auto summary = run("0.8");
+  expect_no_mask(summary, "the probe board cannot be read");
+  EXPECT_GT(summary["light"]["unanswered"]["board saturated"], 0) << summary["light"];
+}
+
+TEST_F(LampRunFault, ACalibrationOfAnotherCamera) {
+  auto camera = read_text(CGSR_SOURCE_DIR "/config/maps/home/camera.yaml");
+  replace(camera, "image_height: 480", "image_height: 360");
+  write_text(scratch_ / "camera.yaml", camera);
+  change({{CGSR_SOURCE_DIR "/config/maps/home/camera.yaml", scratch_ / "camera.yaml"}});
+  const auto summary = run("0.4");
+  expect_no_mask(summary, "no probe board");
+  ASSERT_EQ(summary["problems"].size(), 1U);
+  EXPECT_THAT(summary["problems"][0].get<std::string>(), HasSubstr("another camera's file?"));
+}
+
+TEST_F(LampRunFault, ACalibrationOfAnotherLens) {
+  auto camera = read_text(CGSR_SOURCE_DIR "/config/maps/home/camera.yaml");
+  replace(camera, "data: [602", "data: [902");
+  write_text(scratch_ / "camera.yaml", camera);
+  change({{CGSR_SOURCE_DIR "/config/maps/home/camera.yaml", scratch_ / "camera.yaml"}});
+  const auto summary = run("0.4");
+  expect_no_mask(summary, "no probe board");
+  EXPECT_THAT(summary["problems"][0].get<std::string>(), HasSubstr("do not belong together"));
+}
+
+TEST_F(LampRunFault, ALampThatHangsBelowTheBoard) {
+  change({{"\nheight_m = 2.75", "\nheight_m = 0.8"}});
+  const auto summary = run("0.4");
+  expect_no_mask(summary, "no probe board");
+  ASSERT_EQ(summary["problems"].size(), 1U);
+  EXPECT_THAT(summary["problems"][0].get<std::string>(), HasSubstr("lamp: "));
+  EXPECT_THAT(errors_, HasSubstr("it tracks without a mask"));
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
