@@ -1,11 +1,25 @@
 #include "pipeline/render/mask_growth.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <utility>
 
 #include <emmintrin.h>
 
 namespace cgsr::render {
+namespace {
+
+// Eight cells, a bit each, as eight bytes that are 0 or 255.
+constexpr std::array<std::uint64_t, 256> kBytes = [] {
+  std::array<std::uint64_t, 256> bytes{};
+  for (std::size_t bits = 0; bits < bytes.size(); ++bits) {
+    for (unsigned k = 0; k < 8; ++k) bytes[bits] |= (bits >> k & 1U) != 0 ? std::uint64_t{0xFF} << 8U * k : 0;
+  }
+  return bytes;
+}();
+
+}  // namespace
 
 MaskGrowth::MaskGrowth(int width, int height)
     : width_(width),
@@ -76,10 +90,10 @@ void MaskGrowth::step(bool corners) {
 void MaskGrowth::write(std::uint8_t* mask) const {
   const std::uint64_t* row = cells_.data();
   for (int y = 0; y < height_; ++y, row += words_, mask += width_) {
-    for (int x = 0; x < width_; ++x) {
-      const std::uint64_t bit = row[x / 64] >> static_cast<unsigned>(x % 64) & 1U;
-      mask[x] = static_cast<std::uint8_t>(-static_cast<int>(bit));
-    }
+    const auto bits = [row](int x) { return row[x / 64] >> static_cast<unsigned>(x % 64); };
+    int x = 0;
+    for (; x + 8 <= width_; x += 8) std::memcpy(mask + x, &kBytes[bits(x) & 0xFFU], 8);
+    for (; x < width_; ++x) mask[x] = static_cast<std::uint8_t>(-static_cast<int>(bits(x) & 1U));
   }
 }
 

@@ -211,31 +211,38 @@ void ShadowVolumes::draw_side(const Side& side, const Eigen::Vector3f& p_WL) {
   if (size < 1e-9F) return;
   DepthPlane plane;
   if (!surfaces_.plane_in_view(n / size, n.dot(p_WL) / size, plane)) return;
-  draw_part({side.a, side.b, to_b, to_a}, plane, 1.0F, side.reach);
+  const Strip strip{side.a, side.b, to_a, to_b};
+  if (!surfaces_.may_be_in_view(strip.between(1.0F, side.reach))) return;
+  draw_part(strip, plane, end_of(strip, 1.0F), end_of(strip, side.reach));
+}
+
+std::array<Eigen::Vector3f, 4> ShadowVolumes::Strip::between(float from, float to) const {
+  return {a + (from - 1.0F) * to_a, b + (from - 1.0F) * to_b, b + (to - 1.0F) * to_b, a + (to - 1.0F) * to_a};
+}
+
+ShadowVolumes::PartEnd ShadowVolumes::end_of(const Strip& strip, float times) const {
+  if (!uncertain_) return {times, 0.0F, 0.0F};
+  const float a = moved_cells(strip.a + (times - 1.0F) * strip.to_a, times);
+  const float b = moved_cells(strip.b + (times - 1.0F) * strip.to_b, times);
+  return {times, std::min(a, b), std::max(a, b)};
 }
 
 /// A side between two multiples of the way to the edge, in as many parts as its uncertainty differs.
-///
-/// \param edge  both ends, and the way to the second and the first from the lamp.
-void ShadowVolumes::draw_part(const std::array<Eigen::Vector3f, 4>& edge, const DepthPlane& plane, float from,
-                              float to) {
-  const std::array<Eigen::Vector3f, 4> corners = {edge[0] + (from - 1.0F) * edge[3], edge[1] + (from - 1.0F) * edge[2],
-                                                  edge[1] + (to - 1.0F) * edge[2], edge[0] + (to - 1.0F) * edge[3]};
+void ShadowVolumes::draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to) {
   std::uint8_t bits = 1;
   if (uncertain_) {
-    const std::array<float, 4> moved = {moved_cells(corners[0], from), moved_cells(corners[1], from),
-                                        moved_cells(corners[2], to), moved_cells(corners[3], to)};
-    const float least = *std::min_element(moved.begin(), moved.end());
-    const float most = *std::max_element(moved.begin(), moved.end());
-    if (most > least + 1.5F && to > 1.15F * from) {
-      const float middle = std::sqrt(from * to);
-      draw_part(edge, plane, from, middle);
-      draw_part(edge, plane, middle, to);
+    const float least = std::min(from.least, to.least);
+    const float most = std::max(from.most, to.most);
+    if (most > least + 1.5F && to.times > 1.15F * from.times) {
+      const PartEnd middle = end_of(strip, std::sqrt(from.times * to.times));
+      draw_part(strip, plane, from, middle);
+      draw_part(strip, plane, middle, to);
       return;
     }
     bits = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(most)));
   }
-  surfaces_.mark(corners, plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, bits, sides_);
+  surfaces_.mark(strip.between(from.times, to.times), plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, bits,
+                 sides_);
 }
 
 /// How far the border of a volume may be off in the image at a point that lies so many times as far from the lamp as what throws the shade: the

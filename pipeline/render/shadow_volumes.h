@@ -78,6 +78,22 @@ class ShadowVolumes {
     Eigen::Vector3f b;
     float reach;
   };
+  /// A side behind its edge: from both of its ends away from the lamp.
+  struct Strip {
+    Eigen::Vector3f a;
+    Eigen::Vector3f b;
+    Eigen::Vector3f to_a;  ///< from the lamp.
+    Eigen::Vector3f to_b;
+
+    /// The corners between two multiples of the way to the edge.
+    [[nodiscard]] std::array<Eigen::Vector3f, 4> between(float from, float to) const;
+  };
+  /// Where a part of a strip begins or ends: multiple of the way to the edge, and what its corners may be off by, cells.
+  struct PartEnd {
+    float times;
+    float least;
+    float most;
+  };
   /// The image's axes and the view's, in W.
   struct Axes {
     Eigen::Vector3f right = Eigen::Vector3f::UnitX();
@@ -97,7 +113,8 @@ class ShadowVolumes {
                                    const Eigen::Vector3f& p_WL) const;
   [[nodiscard]] float leaves_map_after(const Eigen::Vector3f& p_W, const Eigen::Vector3f& p_WL) const;
   void draw_side(const Side& side, const Eigen::Vector3f& p_WL);
-  void draw_part(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float from, float to);
+  [[nodiscard]] PartEnd end_of(const Strip& strip, float times) const;
+  void draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to);
   [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
   void write_masks();
   void shade_surfaces();

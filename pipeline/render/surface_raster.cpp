@@ -100,6 +100,27 @@ bool SurfaceRaster::plane_in_view(const Eigen::Vector3f& normal, float offset_m,
   return true;
 }
 
+bool SurfaceRaster::may_be_in_view(const std::array<Eigen::Vector3f, 4>& corners) const {
+  constexpr float kSpare = 1.0F;
+  const auto near = static_cast<float>(parameters_.near_m);
+  const float right = static_cast<float>(view_->width) + kSpare;
+  const float below = static_cast<float>(view_->height) + kSpare;
+  int behind = 0;
+  int to_left = 0;
+  int to_right = 0;
+  int above = 0;
+  int beneath = 0;
+  for (const Eigen::Vector3f& corner : corners) {
+    const Eigen::Vector3f p = to_cells_ * (corner - p_WC_);
+    behind += p.z() < near ? 1 : 0;
+    to_left += p.x() < -kSpare * p.z() ? 1 : 0;
+    to_right += p.x() > right * p.z() ? 1 : 0;
+    above += p.y() < -kSpare * p.z() ? 1 : 0;
+    beneath += p.y() > below * p.z() ? 1 : 0;
+  }
+  return behind < 4 && to_left < 4 && to_right < 4 && above < 4 && beneath < 4;
+}
+
 void SurfaceRaster::mark(const std::array<Eigen::Vector3f, 4>& corners, const DepthPlane& plane, float lift,
                          const DepthBuffer& buffer, std::uint8_t bits, std::vector<std::uint8_t>& mask) const {
   const auto near = static_cast<float>(parameters_.near_m);

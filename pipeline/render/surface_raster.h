@@ -38,6 +38,9 @@ class SurfaceRaster {
   /// Whether a triangle that was drawn covers a place of the raster, exactly.
   [[nodiscard]] bool covers(std::uint32_t triangle, float u, float v) const;
 
+  /// Whether the camera may see some of a convex part of a plane: not all of it lies to one side of the view.
+  [[nodiscard]] bool may_be_in_view(const std::array<Eigen::Vector3f, 4>& corners) const;
+
   /// Sets bits where a convex part of a plane stands before what a buffer of this view holds.
   ///
   /// \param corners  in W, metres.  \param lift  1/Z of the plane has to be so many times that of the buffer.  \param mask  a byte a cell.
