@@ -22,8 +22,9 @@ constexpr int kTrials = 1000;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLumens = 600.0;
 constexpr double kHeightSigma_m = 0.02;
-constexpr double kChi2 = 11.345;  // three degrees of freedom, 99 %
-constexpr int kMostDraws = 400;   // for one trial
+constexpr double kChi2 = 11.345;   // three degrees of freedom, 99 %
+constexpr int kMostDraws = 400;    // for one trial
+constexpr int kLeastOfCurve = 10;  // trials at each value
 
 struct Case {
   const char* name;
@@ -205,7 +206,7 @@ Result<Report> lamp_cases(const Setting& setting) {
                          const std::function<double(double)>& angle_of,
                          const std::function<double(double)>& factor_of) -> Result<void> {
     Plot plot{title, unit, "", {{"answered", {}}, {"median error, dm", {}}}};
-    const int each = std::max(2, wanted / static_cast<int>(values.size()));
+    const int each = std::max(kLeastOfCurve, wanted / static_cast<int>(values.size()));
     for (const double value : values) {
       Random random = Random(setting.seed).fork(++label);
       Outcome outcome;

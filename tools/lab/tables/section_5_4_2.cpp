@@ -270,6 +270,29 @@ void add_rows(const std::string& name, const Tally& tally, std::uint64_t seed, R
       figure(name + ", everything marked", "area factor", "", tally.cells / tally.truly, tally.views));
 }
 
+/// What is demanded of the widened mask, over the images of all worlds.
+struct Pooled {
+  double marked = 0.0;
+  double truly = 0.0;
+  int views = 0;
+  int balls = 0;
+  int covered = 0;
+
+  void add(const Tally& tally) {
+    marked += tally.marked;
+    truly += tally.truly;
+    views += tally.views;
+    balls += tally.balls;
+    covered += tally.covered;
+  }
+
+  void add_rows(Report& report) const {
+    const std::string name = "all worlds pooled, estimated";
+    report.rows.push_back(share_row(name, "ball's shade covered", covered, balls));
+    report.rows.push_back(figure(name, "area factor", "", marked / truly, views));
+  }
+};
+
 }  // namespace
 
 Result<void> look_at_shade(std::uint64_t seed, int views) {
@@ -304,6 +327,7 @@ Result<Report> section_5_4_2(const Setting& setting) {
       fmt::format("shaded regions beside the ray tracer's, {} views a world, each under a lamp of its own", trials);
   report.config_sha256 = setting.config_sha256();
   report.seed = setting.seed;
+  Pooled pooled;
   for (const std::string_view world : kWorlds) {
     const std::string name(world);
     auto room = Room::make(name, setting.seed);
@@ -316,7 +340,9 @@ Result<Report> section_5_4_2(const Setting& setting) {
       setting.progress(fmt::format("{}: {} of {}", name, tally.views, trials));
     }
     add_rows(name, tally, setting.seed, report);
+    pooled.add(tally);
   }
+  pooled.add_rows(report);
   if (setting.count) {
     setting.progress("counting instructions");
     const auto counted =
@@ -343,6 +369,8 @@ Result<Report> section_5_4_2(const Setting& setting) {
       "A ball of 20 cm hangs anywhere in view where some pixel of it lies in shade, often at a volume's border; "
       "covered: every such pixel is in the "
       "mask.",
+      "Pooled: the cells of all views of all worlds together, and all balls; a world by itself may have hardly any "
+      "shade.",
       "new_view: the lamp stays and the camera moved; new_lamp: silhouettes are made anew as well."};
   return report;
 }
