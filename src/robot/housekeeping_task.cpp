@@ -36,6 +36,12 @@ std::string light_columns(const Decision& decision) {
   return columns + fmt::format(",\"{}\"", name_of(decision.shade.status));
 }
 
+/// By what was really there; empty where nobody knows it.
+std::string error_columns(const std::optional<PoseError>& off) {
+  if (!off) return ",,";
+  return fmt::format(",{:.4f},{:.3f}", off->position_m, off->direction_rad * 180.0 / std::numbers::pi);
+}
+
 std::string_view state_of(const Decision& decision, config::TaskKind task) {
   switch (task) {
     case config::TaskKind::kFollow:
@@ -79,7 +85,7 @@ std::string stage_times(const runtime::FrameRecord& record, const runtime::Stage
 std::string run_csv_head() {
   return "frame,stamp_s,found,x,y,width,height,divergence,light_r,light_g,light_b,state,goal_mps,goal_radps,"
          "commanded_mps,commanded_radps,armed,stop_cause,pose,corrected,reason,x_m,y_m,heading_rad,sigma_m,"
-         "probes,lamp_x_m,lamp_y_m,lamp_z_m,lamp_sigma_m,shade";
+         "probes,lamp_x_m,lamp_y_m,lamp_z_m,lamp_sigma_m,shade,camera_off_m,camera_off_deg";
 }
 
 void HousekeepingTask::step() {
@@ -127,13 +133,14 @@ void HousekeepingTask::take(const VisionReport& report) {
   const auto light =
       lights_.add(report.record.stamp, decision.object.found ? std::optional(decision.object.light) : std::nullopt);
   std::optional<hal::ImageTruth> truth;
+  std::optional<PoseError> off;
   if (outputs_.simulation != nullptr) truth = outputs_.simulation->truth(report.record.stamp);
   if (truth) {
     truths_.add(*truth, decision.object, tally_.last_motion);
-    poses_.add(*truth, decision.where, tally_.last_motion.odometry);
+    off = poses_.add(*truth, decision.where, tally_.last_motion.odometry);
   }
   lights_seen_.add(decision, truth);
-  write_row(report);
+  write_row(report, off);
   if (auto picture = picture_of(report.record.image_sequence)) {
     ++tally_.pictures;
     const ImageView& view = picture->view();
@@ -230,10 +237,10 @@ std::optional<ImageLease> HousekeepingTask::picture_of(std::uint64_t sequence) {
   }
 }
 
-void HousekeepingTask::write_row(const VisionReport& report) {
+void HousekeepingTask::write_row(const VisionReport& report, const std::optional<PoseError>& off) {
   const std::string row = row_of(report, tally_.last_motion, outputs_.task);
   outputs_sum_.add(row.data(), row.size());
-  if (outputs_.csv) note(outputs_.csv->add_line(row));
+  if (outputs_.csv) note(outputs_.csv->add_line(row + error_columns(off)));
 }
 
 void HousekeepingTask::draw(const VisionReport& report, const ImageLease& picture,

@@ -116,7 +116,7 @@ class HousekeepingTask {
                    const runtime::FrameRecord& record);
   void take(const SwitchRecord& record);
   std::optional<ImageLease> picture_of(std::uint64_t sequence);
-  void write_row(const VisionReport& report);
+  void write_row(const VisionReport& report, const std::optional<PoseError>& off);
   void draw(const VisionReport& report, const ImageLease& picture, const std::optional<color::Light>& light,
             const std::optional<hal::ImageTruth>& truth);
   void note(const Result<void>& outcome);

@@ -15,25 +15,26 @@ geometry::Pose true_camera(const hal::ImageTruth& truth) {
 
 }  // namespace
 
-void PoseTally::add(const hal::ImageTruth& truth, const Whereabouts& where, const hal::Odometry& odometry) {
-  if (!where.has_map) return;
-  if (figures_.images == 0 && !where.camera.correction.corrected) return;
+std::optional<PoseError> PoseTally::add(const hal::ImageTruth& truth, const Whereabouts& where,
+                                        const hal::Odometry& odometry) {
+  if (!where.has_map) return std::nullopt;
+  if (figures_.images == 0 && !where.camera.correction.corrected) return std::nullopt;
   follow_odometry(truth.robot, odometry);
   const geometry::Vector6d error = geometry::step_between(true_camera(truth), where.camera.X_WC);
-  const double error_m = error.head<3>().norm();
-  const double error_rad = error.tail<3>().norm();
+  const PoseError off{error.head<3>().norm(), error.tail<3>().norm()};
   const auto n = static_cast<double>(++figures_.images);
   figures_.corrected += where.camera.correction.corrected ? 1 : 0;
-  figures_.mean_m += (error_m - figures_.mean_m) / n;
-  figures_.mean_rad += (error_rad - figures_.mean_rad) / n;
-  if (error_m > figures_.worst_m) {
-    figures_.worst_m = error_m;
+  figures_.mean_m += (off.position_m - figures_.mean_m) / n;
+  figures_.mean_rad += (off.direction_rad - figures_.mean_rad) / n;
+  if (off.position_m > figures_.worst_m) {
+    figures_.worst_m = off.position_m;
     figures_.worst_s = to_seconds(truth.stamp.time_since_epoch());
   }
-  figures_.worst_rad = std::max(figures_.worst_rad, error_rad);
+  figures_.worst_rad = std::max(figures_.worst_rad, off.direction_rad);
   const bool lost = where.camera.state == localization::TrackState::kLost;
   figures_.lost += lost && state_ != localization::TrackState::kLost ? 1 : 0;
   state_ = where.camera.state;
+  return off;
 }
 
 void PoseTally::follow_odometry(const hal::FloorPose& robot, const hal::Odometry& odometry) {

@@ -24,11 +24,18 @@ struct PoseFigures {
   double odometry_ends_off_m = 0.0;
 };
 
+/// How far an image's pose was from the camera's true one.
+struct PoseError {
+  double position_m = 0.0;
+  double direction_rad = 0.0;  ///< the whole rotation.
+};
+
 /// Adds up the figures, image by image.
 class PoseTally {
  public:
   /// \param odometry  the base's own, at about the image.
-  void add(const hal::ImageTruth& truth, const Whereabouts& where, const hal::Odometry& odometry);
+  /// \return this image's error; nothing before the first correction and without a map.
+  std::optional<PoseError> add(const hal::ImageTruth& truth, const Whereabouts& where, const hal::Odometry& odometry);
 
   [[nodiscard]] const PoseFigures& figures() const { return figures_; }
 

@@ -75,9 +75,13 @@ Result<Report> home_round(const Setting& setting) {
     const auto robot = robot_with_copy(shipped, (*home)->scene(), 0, seed, folder);
     if (!robot) return tl::unexpected(robot.error());
     const auto json = scratch_json();
-    auto run = run_for_json({program.string(), "run", "--config", robot->string(), "--seed", std::to_string(seed),
-                             "--log-level", "warning", "--json", json.string()},
-                            json);
+    std::vector<std::string> call{program.string(),     "run",         "--config", robot->string(), "--seed",
+                                  std::to_string(seed), "--log-level", "warning",  "--json",        json.string()};
+    if (setting.videos) {
+      const auto name = *setting.videos / fmt::format("home-round-{}", seed);
+      call.insert(call.end(), {"--csv", name.string() + ".csv", "--video", name.string() + ".mkv"});
+    }
+    auto run = run_for_json(call, json);
     std::filesystem::remove_all(folder);
     if (!run) return tl::unexpected(run.error());
     if (!run->contains("pose")) return fail(fmt::format("seed {}: the robot never found out where it is", seed));
@@ -100,7 +104,8 @@ Result<Report> home_round(const Setting& setting) {
       "Not in the dissertation. Demanded: under 6 cm and 1.5 degrees throughout, from the first correction on.",
       "A seed draws the calibrated copy (camera, mount, map), noise and slip. The configuration's hash is that of the "
       "run "
-      "with its copy's paths."};
+      "with its copy's paths.",
+      "With --videos FOLDER every run leaves its film there and a CSV with each image's error."};
   return report;
 }
 
