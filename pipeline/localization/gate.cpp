@@ -16,6 +16,8 @@ constexpr float kChance = 0.2F;
 constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the farther off, the more must speak for it
 constexpr float kChoiceCounts =
     0.04F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
+constexpr double kSame_m = 0.05;
+constexpr double kSame_rad = 1.5 * std::numbers::pi / 180.0;
 constexpr int kLeastExpected = 3;
 // Where a narrow prior holds what they leave open: a bare wall shows its skirting, and that says how far it is.
 constexpr int kLeastFollowed = 2;
@@ -31,6 +33,11 @@ geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParame
   geometry::Matrix6d covariance = estimate.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
   covariance.topLeftCorner<3, 3>().diagonal().array() += parameters.map_sigma_m * parameters.map_sigma_m;
   return covariance;
+}
+
+bool same_answer(const geometry::Pose& a, const geometry::Pose& b) {
+  const geometry::Vector6d step = geometry::step_between(a, b);
+  return step.head<3>().norm() <= kSame_m && step.tail<3>().norm() <= kSame_rad;
 }
 
 float evidence_of(const Estimate& estimate, const Standing& standing) {
@@ -54,6 +61,7 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
     const Standing alone{.lead = kMostLead, .cells = standing->cells};
     return evidence_of(estimate, alone) < parameters.evidence_least ? Reason::kUnexplained : Reason::kAmbiguous;
   }
+  if (!standing) return Reason::kNone;
   const double turn_most = parameters.sigma_most_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= parameters.sigma_most_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= turn_most))

@@ -18,12 +18,15 @@ struct Standing {
   bool narrow = false;  ///< the prior is hardly wider than one pose.
 };
 
+/// Whether two poses are one answer: which of them is taken would be no great error.
+bool same_answer(const geometry::Pose& a, const geometry::Pose& b);
+
 /// What speaks for an estimate that a search found: how well image and map agree there, how far ahead of the next best pose it is, less how
 /// far it is from the prior and how many poses there were to choose from: among many one fits by accident.
 float evidence_of(const Estimate& estimate, const Standing& standing);
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
-/// \param standing  none: the pose was followed from a narrow prior and no other one was looked at.
+/// \param standing  none: the pose was followed from a narrow prior. How uncertain it may be then is the tracker's to say.
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters);
 

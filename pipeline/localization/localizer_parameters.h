@@ -38,9 +38,9 @@ struct LocalizerParameters {
   int walks = 4;
   int matches_least = 4;
   double explained_tracking = 0.3;
-  double evidence_least = 0.45;
-  double prior_chi2_most = 25.0;
-  double sigma_most_m = 0.1;
+  double evidence_least = 0.42;
+  double prior_chi2_most = 18.5;  // exceeded by one right pose in 200: chi square of six numbers
+  double sigma_most_m = 0.06;
   double sigma_most_deg = 3.5;
   double rms_most_px = 1.35;
   int pieces_most = 1200;
@@ -79,8 +79,9 @@ struct LocalizerParameters {
         "evidence_least", self.evidence_least, {-10.0, 2.0}, "",
         "gate where several poses were tried: agreement of image and map, lead, less distance and width of the prior");
     visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
-    visit.number("sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m", "gate: of the position's worst direction");
-    visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "gate: of the worst axis of turning");
+    visit.number("sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m",
+                 "gate where several poses were tried: of the position's worst direction");
+    visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "likewise of the worst axis of turning");
     visit.number("rms_most_px", self.rms_most_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
     visit.number("pieces_most", self.pieces_most, {16, 20000}, "",
                  "visible pieces of edges worked with, nearest and longest first");

@@ -13,6 +13,7 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kTiltKept = 0.9997;  // from image to image
 
 // An error that is the same share of every step adds up along the way: what this step adds to the variance.
 double grown(double share, double before, double step) {
@@ -87,8 +88,10 @@ void PoseTracker::moved(const Pose& X_R0R1) {
   localizer_->carried(X_C0C1);
 }
 
-// A robot on a level floor: its height, roll and pitch are known from mount and base better than from what was carried along. The camera stays
-// above where it was: turned about the wheels instead, a mount that is told wrong by a third of a degree would push it aside at every image.
+// A robot on a level floor: its height is the mount's. Roll and pitch are the mount's too, which was told a little wrong:
+// what good views showed of that is kept for those that show nothing of it, for before a wall a roll that is off by a
+// third of a degree looks like a heading that is off by one. It is forgotten slowly, back to what was told. The camera stays
+// above where it was: turned about the wheels instead, a mount that is told wrong would push it aside at every image.
 void PoseTracker::flatten() {
   const Eigen::Vector3d axle(0.0, 0.0, axle_height_m_);
   Pose tilt = Pose::Identity();
@@ -96,16 +99,23 @@ void PoseTracker::flatten() {
   tilt.translation() = axle - tilt.linear() * axle;
   const Pose X_WR = now_.X_WC * X_RC_.inverse() * tilt.inverse();
   const Pose level = geometry::pose_on_floor(0.0, 0.0, geometry::heading_of(X_WR)) * tilt * X_RC_;
-  now_.X_WC.linear() = level.linear();
+  Eigen::Vector3d off_level = geometry::vector_of(now_.X_WC.linear() * level.linear().transpose());
+  off_level.z() = 0.0;
+  now_.X_WC.linear() = geometry::rotation_of(kTiltKept * off_level) * level.linear();
   now_.X_WC.translation().z() = level.translation().z();
-  for (const int i : {2, 3, 4}) {
-    now_.covariance.row(i).setZero();
-    now_.covariance.col(i).setZero();
-  }
+
+  Matrix6d& covariance = now_.covariance;
+  covariance.row(2).setZero();
+  covariance.col(2).setZero();
+  covariance(2, 2) = parameters_.height_m * parameters_.height_m;
   const double tilt_rad = parameters_.tilt_deg * kDegree;
-  now_.covariance(2, 2) = parameters_.height_m * parameters_.height_m;
-  now_.covariance(3, 3) = tilt_rad * tilt_rad;
-  now_.covariance(4, 4) = tilt_rad * tilt_rad;
+  const double level_rad = parameters_.level_deg * kDegree;
+  for (const int i : {3, 4}) {
+    covariance.row(i) *= kTiltKept;
+    covariance.col(i) *= kTiltKept;
+    const double forgotten = (1.0 - kTiltKept * kTiltKept) * tilt_rad * tilt_rad;
+    covariance(i, i) = std::max(covariance(i, i) + forgotten, level_rad * level_rad);
+  }
 }
 
 void PoseTracker::widen() {

@@ -13,6 +13,7 @@ struct PoseTrackerParameters {
   double drift_m = 0.002;
   double drift_deg = 0.1;
   double tilt_deg = 0.5;
+  double level_deg = 0.1;
   double height_m = 0.01;
   bool floor = true;
   int lost_after = 15;
@@ -28,7 +29,10 @@ struct PoseTrackerParameters {
     visit.number("slip_turn", self.slip_turn, {0.0, 1.0}, "", "sigma of its turn, relative");
     visit.number("drift_m", self.drift_m, {0.0, 0.2}, "m", "sigma of the position that every image adds");
     visit.number("drift_deg", self.drift_deg, {0.0, 10.0}, "deg", "sigma of the direction that every image adds");
-    visit.number("tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg", "on a floor: sigma of roll and pitch");
+    visit.number("tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg",
+                 "on a floor: sigma of the mount's roll and pitch as they were told; what images say of them is kept");
+    visit.number("level_deg", self.level_deg, {0.001, 30.0}, "deg",
+                 "on a floor: how level it is and how well the base knows its pitch; never surer of roll and pitch");
     visit.number("height_m", self.height_m, {0.0005, 1.0}, "m", "on a floor: sigma of the camera's height");
     visit.flag("floor", self.floor, "height, roll and pitch are those of a robot on a level floor");
     visit.number("lost_after", self.lost_after, {1, 1000}, "",

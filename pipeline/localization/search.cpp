@@ -7,6 +7,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "pipeline/localization/gate.h"
+
 namespace cgsr::localization {
 namespace {
 
@@ -246,7 +248,9 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
             [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
   best_ = judged[0];
   for (std::size_t i = 1; i < count; ++i) {
-    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kRival_px) continue;
+    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kRival_px ||
+        same_answer(best_.solution.X_WC, judged[i].solution.X_WC))
+      continue;
     lead_ = std::min(lead_, rank_of(best_) - rank_of(judged[i]));
     break;
   }
