@@ -45,6 +45,11 @@ double heading_of(const Pose& X_WR) {
   return std::atan2(X_WR.linear()(1, 0), X_WR.linear()(0, 0));
 }
 
+double pitch_of(const Pose& X_WR) {
+  const auto forward = X_WR.linear().col(0);
+  return std::atan2(-forward.z(), std::hypot(forward.x(), forward.y()));
+}
+
 Pose normalized(const Pose& X) {
   Pose result = X;
   result.linear() = Eigen::Quaterniond(X.linear()).normalized().toRotationMatrix();

@@ -30,6 +30,9 @@ Pose pose_on_floor(double x_m, double y_m, double heading_rad);
 /// \return the angle from W's x axis to R's, positive to the left.
 double heading_of(const Pose& X_WR);
 
+/// \return how far R's x axis points below the horizon.
+double pitch_of(const Pose& X_WR);
+
 /// The rotation brought back to an exact one, after many products.
 Pose normalized(const Pose& X);
 

@@ -36,7 +36,7 @@ struct LocalizerParameters {
   int finalists = 8;
   int neighbours = 40;
   int walks = 4;
-  int matches_least = 4;
+  int matches_least = 3;
   double explained_tracking = 0.3;
   double evidence_least = 0.42;
   double prior_chi2_most = 18.5;  // exceeded by one right pose in 200: chi square of six numbers

@@ -160,6 +160,8 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
       if (!row) return tl::unexpected(row.error());
       if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
       X_OR_before_ = (*row)->X;
+      // About the floor instead of an axle of unknown height: a millimetre of the camera's height.
+      state_->tracker->pitched(geometry::pitch_of((*row)->X), 0.0);
     }
     // No robot waits for the first one: it is looked at until it says where the camera is.
     if (images_ == 0) return follow(image, runtime::StageBudget::kAll);

@@ -43,5 +43,14 @@ TEST(Pose, HeadingIsPositiveToTheLeft) {
               0, 1e-12);
 }
 
+TEST(Pose, PitchIsPositiveNoseDownWhateverTheHeading) {
+  Pose lean = Pose::Identity();
+  lean.linear() = rotation_of({0.0, 0.05, 0.0});
+  for (const double heading : {0.0, 1.0, -2.5}) {
+    EXPECT_NEAR(pitch_of(pose_on_floor(1.0, 2.0, heading) * lean), 0.05, 1e-12);
+    EXPECT_NEAR(pitch_of(pose_on_floor(1.0, 2.0, heading)), 0.0, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace cgsr::geometry
