@@ -93,6 +93,8 @@ bool is_clear(const std::string& message) {
 /// Damages `valid` over and over: each time there is a clear refusal, or parameters that are within their ranges.
 template <class Parameters>
 void survive(const std::string& valid, int trials, std::uint64_t seed) {
+  const auto undamaged = Document::parse(valid, "robot.toml");
+  ASSERT_TRUE(undamaged && read<Parameters>(*undamaged, Missing::kTakesDefault)) << "what is damaged must be good";
   Random random(seed);
   int refused = 0;
   for (int trial = 0; trial < trials; ++trial) {
@@ -110,7 +112,6 @@ void survive(const std::string& valid, int trials, std::uint64_t seed) {
     }
   }
   EXPECT_GT(refused, trials / 10);
-  EXPECT_LT(refused, trials) << "some damage falls into a comment or changes a value to another good one";
 }
 
 TEST(ReaderProperty, DamagedSampleIsRefusedOrValid) {

@@ -35,7 +35,7 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.expected = 1;
   EXPECT_EQ(judged(estimate), Reason::kNothingExpected);
   estimate = good();
-  estimate.matches = 3;
+  estimate.matches = 2;
   EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
   estimate = good();
   estimate.solved = false;

@@ -86,7 +86,7 @@ TEST(WorldsGolden, MapsHaveTheStatedSize) {
   };
   EXPECT_EQ(size("planar.toml"), (std::pair{169, 456}));
   EXPECT_EQ(size("occlusion.toml"), (std::pair{71, 147}));
-  EXPECT_NEAR(size("home.toml").first, 500, 50);
+  EXPECT_NEAR(size("home.toml").first, 530, 50);
 }
 
 TEST(WorldsProperty, ThePlanarWorldScales) {
