@@ -78,6 +78,7 @@ Result<Report> home_round(const Setting& setting) {
     std::vector<std::string> call{program.string(),     "run",         "--config", robot->string(), "--seed",
                                   std::to_string(seed), "--log-level", "warning",  "--json",        json.string()};
     if (setting.videos) {
+      std::filesystem::create_directories(*setting.videos);
       const auto name = *setting.videos / fmt::format("home-round-{}", seed);
       call.insert(call.end(), {"--csv", name.string() + ".csv", "--video", name.string() + ".mkv"});
     }

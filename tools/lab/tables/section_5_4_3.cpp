@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
@@ -204,6 +205,10 @@ Result<Report> section_5_4_3(const Setting& setting) {
   if (auto made = judge.make(*config, focal_px, width_px, height_px); !made) return tl::unexpected(made.error());
 
   robot::RunOptions options;
+  if (setting.videos) {
+    std::filesystem::create_directories(*setting.videos);
+    options.video = (*setting.videos / fmt::format("section-5.4.3-{}.mkv", setting.seed)).string();
+  }
   int images = 0;
   options.witness = [&](const ImageView& image, const robot::VisionReport& report,
                         const std::optional<hal::ImageTruth>& truth) {
@@ -266,6 +271,7 @@ Result<Report> section_5_4_3(const Setting& setting) {
       "the dissertation's tracking accuracy. Precision is |found and true| / |found| over the images with an answer.",
       "False: images in which something that does not touch the ball was taken for it, of all. Without a mask dark "
       "histograms are searched everywhere.",
+      "With --html the six pictures of Figure 5.5, with --videos FOLDER the film with the mask drawn.",
       fmt::format("The curve is of one image in {}; each point has one darkness factor instead of three.",
                   kCurveEvery)};
   return report;
