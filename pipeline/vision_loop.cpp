@@ -100,7 +100,7 @@ LampSight VisionLoop::probes(const ImageLease& image, const runtime::Aged<Wherea
   PlacedRobot robot;
   const bool placed = where.value.known() && where.age == Duration::zero();
   if (placed) robot = robot_of(where.value.camera.X_WC, where.value.camera.covariance, parts_.where->X_CR());
-  const LampSight sight = parts_.lamp->look(image.view(), placed ? &robot : nullptr, lines);
+  LampSight sight = parts_.lamp->look(image.view(), placed ? &robot : nullptr, lines);
   board.want(LampLine::kProbeLamp, parts_.lamp->wants_on(CheckedLamp::kProbeLamp));
   board.want(LampLine::kRoomLamp, parts_.lamp->wants_on(CheckedLamp::kRoomLamp));
   return sight;
