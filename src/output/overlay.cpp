@@ -107,7 +107,7 @@ void Overlay::draw_panel(const OverlayFacts& facts) {
     first += fmt::format("divergence {:.3f}   light {:.2f} {:.2f} {:.2f}", facts.divergence, facts.light->r,
                          facts.light->g, facts.light->b);
   } else {
-    first += "not found";
+    first += facts.box ? "found" : "not found";
   }
   std::vector<std::string> lines{first};
   for (const std::string& line : facts.lines) {
