@@ -15,12 +15,18 @@ bool VisionTask::step() {
   // A goal that finds no room is lost: the newest one is what counts, and without any the dead-man stops the robot.
   static_cast<void>(
       links_.goals.push(Goal{{decision.goal.forward_mps, decision.goal.left_radps}, image->stamp(), decision.halt}));
-  // A request that finds no room gets no answer, and the line counts as silent.
-  while (auto request = loop_.next_switching()) static_cast<void>(links_.switch_requests.push(std::move(*request)));
+  ask_for_switchings();
   in_time_.dealt_with(image->sequence(), started, clock_.now());
   links_.images_in_time.store(in_time_.enough(), std::memory_order_relaxed);
   report(decision, std::move(*image));
   return true;
+}
+
+// A request that finds no room gets no answer, and the line counts as silent.
+void VisionTask::ask_for_switchings() {
+  while (const auto request = loop_.next_switching()) {
+    static_cast<void>(links_.switch_requests.push(SwitchRequest(*request)));
+  }
 }
 
 void VisionTask::step_without_image(MonoTime now) {

@@ -20,6 +20,7 @@ class VisionTask {
   void step_without_image(MonoTime now);
 
  private:
+  void ask_for_switchings();
   void report(const Decision& decision, ImageLease image);
 
   VisionLoop& loop_;
