@@ -168,8 +168,7 @@ Outline outline_of(const Vector2d& foot, double radius_m, const Vector2d& tip_sh
 }
 
 bool is_seen(const Board& board, const std::array<Outline, kMostProbes>& behind, const Vector2d& p_B) {
-  if (std::abs(p_B.x()) > board.depth_m / 2 - kBoardMargin_m || std::abs(p_B.y()) > board.width_m / 2 - kBoardMargin_m)
-    return false;
+  if (!is_on_board(board, p_B)) return false;
   for (int i = 0; i < board.probes; ++i) {
     const Probe& probe = board.probe[static_cast<std::size_t>(i)];
     if (within(behind[static_cast<std::size_t>(i)], probe.foot_B, probe.radius_m, p_B, kConeMargin_m)) return false;

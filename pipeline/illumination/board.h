@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -147,7 +148,13 @@ inline bool within(const Outline& outline, const Eigen::Vector2d& foot, double r
 /// From the board's border, where its brightness is no longer its own.
 inline constexpr double kBoardMargin_m = 0.003;
 
-/// Is a place of the board's plane on the board, and not behind a cone? \param behind  what each cone hides from the camera.
+/// Is a place of the board's plane on the board?
+inline bool is_on_board(const Board& board, const Eigen::Vector2d& p_B) {
+  return std::abs(p_B.x()) <= board.depth_m / 2 - kBoardMargin_m &&
+         std::abs(p_B.y()) <= board.width_m / 2 - kBoardMargin_m;
+}
+
+/// Is it on the board, and not behind a cone? \param behind  what each cone hides from the camera.
 bool is_seen(const Board& board, const std::array<Outline, kMostProbes>& behind, const Eigen::Vector2d& p_B);
 
 }  // namespace cgsr::illumination

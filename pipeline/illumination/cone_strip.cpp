@@ -61,9 +61,7 @@ ConeStrip::ConeStrip(const Board& board, int probe, const ShadowParameters& para
       lamp_height_m_(lamp_height_m) {}
 
 bool ConeStrip::seen(const Vector2d& p_B, const std::array<Outline, kMostProbes>& behind) const {
-  if (std::abs(p_B.x()) > board_.depth_m / 2 - kBoardMargin_m ||
-      std::abs(p_B.y()) > board_.width_m / 2 - kBoardMargin_m)
-    return false;
+  if (!is_on_board(board_, p_B)) return false;
   for (int i = 0; i < board_.probes; ++i) {
     if (i == index_) continue;
     const Probe& other = board_.probe[static_cast<std::size_t>(i)];

@@ -276,7 +276,7 @@ bool better(const Registration& a, const Registration& b) {
 
 Registration register_board(const Board& board, const RegistrationParameters& parameters, const LumaView& image,
                             const geometry::Pose& start, bool start_is_good) {
-  if (start_is_good) return attempt(board, parameters, image, start, 2);
+  if (start_is_good) return attempt(board, parameters, image, start, kRounds - 1);
   Registration best = attempt(board, parameters, image, board.X_BC, 0);
   const int all_cones = (1 << board.probes) - 1;
   if (best.good && best.cones == all_cones && best.rms_px < kGoodRms_px) return best;

@@ -22,7 +22,20 @@ constexpr double kTipFound_m = 0.0025;   // then the tip's shadow must be known 
 constexpr double kSameContrast = 0.75;   // of the line alone
 constexpr double kLeastOfFirst = 0.35;   // a second lamp's shadow, of the first one's contrast
 constexpr double kLeastFilled = 0.75;    // of the places inside, dark
-constexpr double kShapeBlur_m = 0.0015;  // of edges on the rings
+constexpr std::array kAxisTurns{-0.1, -0.067, -0.033, 0.0, 0.033, 0.067, 0.1};  // rad
+constexpr double kLongerThanRings = 3.0;  // of the base's radius: shorter shadows end on the rings
+constexpr double kBeside = 1.8;           // of the base's radius, from the axis: out of the shadow
+constexpr double kAxisEnd = 1.1;          // the last part of a shadow is soft and narrow
+constexpr int kLeastAxisPlaces = 3;
+constexpr double kSigmaPerMedian = 1.4826;  // of a normal distribution's absolute values
+constexpr double kMostNoise = 1.2;          // in a fit, of the board's own
+constexpr double kMostUnlike = 0.07;        // likewise, of the contrast
+constexpr double kShapeBlur_m = 0.0015;     // of edges on the rings
+
+// A place along a shadow's axis, from the foot: of the base's radius.
+double axis_place(std::size_t i) {
+  return 1.3 + 0.85 * static_cast<double>(i);
+}
 
 template <class Ring>
 float total(const Ring& ring) {
@@ -125,13 +138,28 @@ void ShadowFinder::take_plane_away() {
     plane = H.ldlt().solve(g);
     soft = round == 0 ? 6.0 : 2.5;
   }
-  level_ = plane[0];
+  plane_ = plane;
   for (std::size_t r = 0; r < kRays; ++r) {
     for (std::size_t k = 0; k < kRings; ++k) {
-      const Vector2d q = grid_[r * kRings + k] / probe_.radius_m;
-      value_[r][k] -= valid_[r][k] * static_cast<float>(plane[0] + plane[1] * q.x() + plane[2] * q.y());
+      value_[r][k] -= valid_[r][k] * static_cast<float>(plane_at(grid_[r * kRings + k]));
     }
   }
+}
+
+// From place to place along the rings, where neither the board's slope nor most of a shadow counts; the median leaves out what edges are there.
+double ShadowFinder::noise() const {
+  std::array<float, static_cast<std::size_t>(kRings) * kRays> step;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < kRays; ++r) {
+    const std::size_t next = (r + 1) % kRays;
+    for (std::size_t k = 0; k < kRings; ++k) {
+      if (valid_[r][k] != 0.0F && valid_[next][k] != 0.0F) step[count++] = std::abs(value_[next][k] - value_[r][k]);
+    }
+  }
+  if (count == 0) return 0.0;
+  const auto middle = step.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(step.begin(), middle, step.begin() + static_cast<std::ptrdiff_t>(count));
+  return kSigmaPerMedian / std::numbers::sqrt2 * static_cast<double>(*middle);
 }
 
 // A wedge is dark in its middle, near the base: rays that are not need no comparison with wedges.
@@ -210,7 +238,7 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
       best.score = static_cast<double>(explained);
       best.ray = ray;
       best.start.contrast = static_cast<double>(-covariance / variance);
-      best.start.level = level_;
+      best.start.level = plane_[0];
       const double angle = 2.0 * kPi * ray / kRays;
       best.start.tip_shadow =
           probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
@@ -230,6 +258,68 @@ ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& t
   return best;
 }
 
+// How much brighter than the plane a place of the board is; nothing where it is not seen.
+std::optional<double> ShadowFinder::off_plane(const LumaView& image, const BoardView& view,
+                                              const Vector2d& from_foot) const {
+  const Vector2d p_B = probe_.foot_B + from_foot;
+  if (!is_seen(board_, behind_, p_B)) return std::nullopt;
+  const auto pixel = view.pixel({p_B.x(), p_B.y(), 0.0});
+  if (!pixel.in_front || !image.holds(pixel.at.x(), pixel.at.y(), 1.0)) return std::nullopt;
+  return static_cast<double>(image.at(pixel.at.x(), pixel.at.y())) - plane_at(from_foot);
+}
+
+// How much brighter than the plane the board is on both sides of an axis.
+ShadowFinder::AxisPlaces ShadowFinder::beside_axis(const LumaView& image, const BoardView& view,
+                                                   const Vector2d& axis) const {
+  const Vector2d across(-axis.y(), axis.x());
+  AxisPlaces places;
+  while (places.count < kAxisPlaces &&
+         is_on_board(board_, probe_.foot_B + axis_place(places.count) * probe_.radius_m * axis)) {
+    double& beside = places.beside[places.count];
+    int sides = 0;
+    for (const double side : {-kBeside, kBeside}) {
+      const auto off = off_plane(image, view, probe_.radius_m * (axis_place(places.count) * axis + side * across));
+      if (!off) continue;
+      beside += *off;
+      ++sides;
+    }
+    if (sides == 2) beside /= 2.0;
+    ++places.count;
+  }
+  return places;
+}
+
+// The rings tell a wedge near the base, and hardly how long it is: how far is it darker along its axis than on both its sides?
+ShadowStart ShadowFinder::follow_axis(const LumaView& image, const BoardView& view, const ShadowStart& start) const {
+  const double length_m = (start.tip_shadow - probe_.foot_B).norm();
+  if (length_m < kLongerThanRings * probe_.radius_m) return start;
+  const Vector2d axis = (start.tip_shadow - probe_.foot_B) / length_m;
+  const Vector2d across(-axis.y(), axis.x());
+  const AxisPlaces places = beside_axis(image, view, axis);
+  ShadowStart followed = start;
+  double best = 0.0;
+  for (const double turn : kAxisTurns) {
+    const Vector2d along = probe_.radius_m * (axis + turn * across).normalized();
+    double missing = 0.0;
+    int seen_places = 0;
+    for (std::size_t i = 0; i < places.count; ++i) {
+      const auto off = off_plane(image, view, axis_place(i) * along);
+      if (!off) continue;
+      missing += places.beside[i] - *off;
+      ++seen_places;
+      const double explained = missing * std::abs(missing) / seen_places;
+      if (seen_places < kLeastAxisPlaces || explained <= best) continue;
+      best = explained;
+      followed.tip_shadow = probe_.foot_B + kAxisEnd * axis_place(i) * along;
+    }
+  }
+  return followed;
+}
+
+double ShadowFinder::plane_at(const Vector2d& from_foot) const {
+  return plane_[0] + (plane_[1] * from_foot.x() + plane_[2] * from_foot.y()) / probe_.radius_m;
+}
+
 void ShadowFinder::sum_rays() {
   for (std::size_t r = 0; r < kRays; ++r) {
     ray_valid_[r] = total(valid_[r]);
@@ -244,7 +334,7 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   ShadowStart again;
   again.tip_shadow = shadow.p_BS;
   again.contrast = shadow.contrast;
-  again.level = level_;
+  again.level = plane_[0];
   again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
   if (!fit_.fit(image, view, behind_, again, with_tip)) return;
@@ -295,6 +385,23 @@ double ShadowFinder::share_brighter_than(double level) const {
   return seen_places > 0 ? static_cast<double>(brighter) / seen_places : 0.0;
 }
 
+// Begun with the length that shows along the axis, and if that leads to none, with what the rings tell.
+bool ShadowFinder::fit_either(const LumaView& image, const BoardView& view, const ShadowStart& rings,
+                              ProbeShadow& shadow) {
+  const auto fits = [&](const ShadowStart& start) {
+    return fit_.fit(image, view, behind_, start, shadow) && is_filled(shadow) && is_explained(shadow);
+  };
+  const ShadowStart axis = follow_axis(image, view, rings);
+  return fits(axis) || (axis.tip_shadow != rings.tip_shadow && fits(rings));
+}
+
+// A fit that stopped at half the length leaves more than the board's own noise, and than a shadow's edges differ from the model's.
+bool ShadowFinder::is_explained(const ProbeShadow& shadow) const {
+  const double noise = kMostNoise * noise_;
+  const double unlike = kMostUnlike * shadow.contrast;
+  return shadow.rms * shadow.rms <= noise * noise + unlike * unlike;
+}
+
 ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Pose& X_BC, double saturation) {
   Found found;
   const BoardView view(board_.camera, X_BC);
@@ -305,6 +412,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
   look_around(image, view);
   saturated_ = share_brighter_than(saturation);
   take_plane_away();
+  noise_ = noise();
   std::array<int, 4> tried{};
   int tried_count = 0;
   while (tried_count < 4 && found.count < kMostShadows) {
@@ -312,13 +420,13 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     const Candidate candidate = best_candidate(tried, tried_count, everywhere_);
     if (candidate.ray < 0 || candidate.score < kLeastScore ||
         candidate.start.contrast < 0.5 * parameters_.least_contrast ||
-        candidate.start.contrast < 0.5 * parameters_.least_share * level_ ||
+        candidate.start.contrast < 0.5 * parameters_.least_share * plane_[0] ||
         (found.count > 0 && candidate.start.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
       break;
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;
     ProbeShadow shadow;
-    if (!fit_.fit(image, view, behind_, candidate.start, shadow) || !is_filled(shadow)) continue;
+    if (!fit_either(image, view, candidate.start, shadow)) continue;
     bool known = false;
     for (int i = 0; i < found.count; ++i) {
       const ProbeShadow& other = found.shadow[static_cast<std::size_t>(i)];

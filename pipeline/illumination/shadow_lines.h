@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,7 +16,7 @@ namespace cgsr::illumination {
 
 /// Finds the shadows of one probe (Alg. 5.1). Where the dissertation takes Canny's edges and Hough's lines, and then the point where two of them
 /// meet, this looks for the meeting point itself: the two lines of a cone's shadow are the tangents from the shadow of its tip to its base, so the
-/// shadow has two unknowns. A coarse search on rings around the base finds where a dark wedge is, and ShadowFit refines it. What does not have that shape (texture, dirt, a hand) is not taken for it.
+/// shadow has two unknowns. A coarse search on rings around the base finds where a dark wedge is, its axis how long it is, and ShadowFit refines it. What does not have that shape (texture, dirt, a hand) is not taken for it.
 class ShadowFinder {
  public:
   static constexpr int kMostShadows = 2;
@@ -51,13 +52,29 @@ class ShadowFinder {
     double score = 0.0;
   };
 
+  // Along a shadow's axis, as far as the board reaches.
+  static constexpr std::size_t kAxisPlaces = 20;
+  struct AxisPlaces {
+    std::array<double, kAxisPlaces> beside{};  // grey levels
+    std::size_t count = 0;
+  };
+
   [[nodiscard]] double share_brighter_than(double level) const;
   void take_plane_away();
+  [[nodiscard]] double noise() const;
   void look_around(const LumaView& image, const BoardView& view);
   [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count, bool everywhere) const;
   [[nodiscard]] bool may_be_middle(int ray) const;
+  [[nodiscard]] std::optional<double> off_plane(const LumaView& image, const BoardView& view,
+                                                const Eigen::Vector2d& from_foot) const;
+  [[nodiscard]] AxisPlaces beside_axis(const LumaView& image, const BoardView& view, const Eigen::Vector2d& axis) const;
+  [[nodiscard]] ShadowStart follow_axis(const LumaView& image, const BoardView& view, const ShadowStart& start) const;
+  [[nodiscard]] double plane_at(const Eigen::Vector2d& from_foot) const;
   void sum_rays();
   void look_for_tip(const LumaView& image, const BoardView& view, ProbeShadow& shadow);
+  [[nodiscard]] bool fit_either(const LumaView& image, const BoardView& view, const ShadowStart& rings,
+                                ProbeShadow& shadow);
+  [[nodiscard]] bool is_explained(const ProbeShadow& shadow) const;
   [[nodiscard]] bool is_filled(const ProbeShadow& shadow) const;
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
@@ -76,7 +93,9 @@ class ShadowFinder {
   std::array<float, kRays> ray_value_{};  // their sums
   std::array<float, kRays> ray_valid_{};
   std::array<Outline, kMostProbes> behind_;  // what the cones hide from the camera
-  double level_ = 0.0;                       // of the board at the foot
+  // The board's brightness: at the foot, and its rise over a base's radius.
+  Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
+  double noise_ = 0.0;  // of the board by itself, grey levels
   double saturated_ = 0.0;
   bool everywhere_ = false;
 };

@@ -19,6 +19,17 @@ geometry::Pose real_camera(const Board& board) {
   return geometry::moved(board.X_BC, step);
 }
 
+// A lamp of 5 cm radius, in parts: its shadow is soft.
+void shine_from_ball(const Vector3d& p_BL, double shadow_level, Drawing& drawing) {
+  constexpr int kParts = 9;
+  drawing.shadow_level = shadow_level / kParts;
+  for (int i = 0; i < kParts; ++i) {
+    const double radius = 0.05 * std::sqrt((i + 0.5) / kParts);
+    const double angle = 2.4 * i;
+    drawing.lamps_B.emplace_back(p_BL + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
+  }
+}
+
 TEST(ProbeObservation, FindsTheShadowsOfDrawnTips) {
   const Board board = shipped_board();
   const auto X_BC = real_camera(board);
@@ -53,13 +64,7 @@ TEST(ProbeObservation, FindsAShadowThatItsOwnConeAllButHides) {
   const auto X_BC = real_camera(board);
   const Vector3d p_BL(-0.656, 0.27, 1.85);  // 20 degrees from the vertical
   Drawing drawing;
-  constexpr int kParts = 9;  // of a ball-shaped lamp of 5 cm radius: its shadow is soft
-  drawing.shadow_level = 30.0 / kParts;
-  for (int i = 0; i < kParts; ++i) {
-    const double radius = 0.05 * std::sqrt((i + 0.5) / kParts);
-    const double angle = 2.4 * i;
-    drawing.lamps_B.emplace_back(p_BL + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
-  }
+  shine_from_ball(p_BL, 30.0, drawing);
   const auto image = draw(board, X_BC, drawing);
   ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
   const auto lamps = locate_lamps(board, {}, observer.observe(image.view()));
@@ -67,6 +72,44 @@ TEST(ProbeObservation, FindsAShadowThatItsOwnConeAllButHides) {
   ASSERT_EQ(lamps.lamp[0].status, LampStatus::kFound);
   EXPECT_EQ(lamps.lamp[0].probes, 1);
   EXPECT_LT((lamps.lamp[0].p_RL - board.X_RB * p_BL).norm(), 0.06);
+}
+
+// Light from far aside: long shadows, a few grey levels darker than the board and twice as long as the rings reach.
+TEST(ProbeObservation, FindsHowLongAWeakShadowIs) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  const BoardView view(board.camera, X_BC);
+  std::array<Outline, kMostProbes> behind;
+  for (std::size_t i = 0; i < 2; ++i) {
+    behind[i] = outline_of(board.probe[i].foot_B, board.probe[i].radius_m, cast(view.p_BC(), board.probe[i].p_BA));
+  }
+  int to_be_seen = 0;
+  int found = 0;
+  for (const auto& [angle, contrast] : {std::pair{60.0, 3.0}, {50.0, 4.0}}) {
+    for (double way = 0.0; way < 360.0; way += 36.0) {
+      const Vector3d p_BL = lamp_at(angle, way);
+      Drawing drawing;
+      drawing.noise = 0.7;
+      shine_from_ball(p_BL, contrast, drawing);
+      const auto image = draw(board, X_BC, drawing);
+      ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+      const auto seen = observer.observe(image.view());
+      for (std::size_t i = 0; i < 2; ++i) {
+        const Vector2d tip = cast(p_BL, board.probe[i].p_BA);
+        if (is_seen(board, behind, tip)) ++to_be_seen;
+        for (int k = 0; k < seen.probe[i].count; ++k) {
+          const ProbeShadow& shadow = seen.probe[i].shadow[static_cast<std::size_t>(k)];
+          if (shadow.lines < 2) continue;
+          const double off = (shadow.p_BS - tip).norm();
+          if (is_seen(board, behind, tip)) found += off < 0.012 ? 1 : 0;
+          EXPECT_LT(off, std::max(0.012, 4.0 * std::sqrt(shadow.covariance.trace())))
+              << angle << ' ' << way << ' ' << i;
+        }
+      }
+    }
+  }
+  EXPECT_GT(to_be_seen, 10);
+  EXPECT_GE(found, 0.9 * to_be_seen);
 }
 
 TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
