@@ -337,7 +337,7 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   again.level = plane_[0];
   again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
-  if (!fit_.fit(image, view, behind_, again, with_tip)) return;
+  if (!fit_.fit(image, view, behind_, again, with_tip) || !is_explained(with_tip)) return;
   // The same shadow, and not something else where the line ends.
   if (with_tip.contrast < kSameContrast * shadow.contrast || shadow.contrast < kSameContrast * with_tip.contrast)
     return;
