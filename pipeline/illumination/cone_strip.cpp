@@ -26,9 +26,11 @@ constexpr double kLeastVariance = 0.5;   // grey levels squared
 constexpr double kLeastGain = 16.0;      // chi-square that the shadow explains
 constexpr int kLeastBeyond = 3;          // places without shadow behind the tip
 constexpr int kLeastSamples = 150;
-constexpr double kModelSigma_m = 0.0006;  // of a tip, by what a penumbra is like beside a cone
-constexpr double kMostSigma_m = 0.004;    // of a tip that is called found
-constexpr double kFurthestOut_m = 0.008;
+constexpr double kModelSigma_m = 0.0006;   // of a tip, by what a penumbra is like beside a cone
+constexpr double kMostSigma_m = 0.004;     // of a tip that is called found
+constexpr double kFurthestOut_m = 0.0125;  // where samples end
+constexpr double kSteepest = 0.5;          // of the way along: a shadow that turns away further shows both its lines,
+constexpr double kShort_m = 0.006;         // unless it is as short as this
 constexpr double kFurthestIn_m = 0.003;
 constexpr int kIterations = 5;      // with every second sample
 constexpr int kLastIterations = 2;  // with all
@@ -429,7 +431,8 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   const double tip_along = x[kTipAlong];
   const double tip_out = x[kTipOut];
   const double reach = samples_[static_cast<std::size_t>(count - 1)].place * kStep_m;
-  if (tip_along > reach - kLeastBeyond * kStep_m || tip_out < -kFurthestIn_m || tip_out > kFurthestOut_m) return false;
+  if (tip_along > reach - kLeastBeyond * kStep_m || tip_out < -kFurthestIn_m) return false;
+  if (tip_out > std::min(kFurthestOut_m, std::max(kShort_m, kSteepest * tip_along))) return false;
   const double dark = x[kDark];
   if (dark < parameters_.least_contrast || dark < parameters_.least_share * x[kLevel] || dark > 0.9 * x[kLevel])
     return false;
