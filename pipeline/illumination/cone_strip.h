@@ -11,7 +11,7 @@
 
 namespace cgsr::illumination {
 
-/// The shadow that lies behind its own cone but for a strip beside the cone's outline, a pixel or two wide: light from behind the camera, at small
+/// The shadow that lies behind its own cone but for a strip beside the cone's outline, some pixels wide: light from behind the camera, at small
 /// angles. Searching and Alg. 5.1's lines cannot see it, since what is dark there is mixed with the cone's own edge. So both are explained at
 /// once: brightness goes from the cone's to the board's across an outline whose exact place is unknown, and the board is darker by a shadow whose
 /// tip is unknown. Beyond the tip the outline without a shadow shows what it looks like.
