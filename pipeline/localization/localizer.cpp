@@ -11,6 +11,7 @@
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/gate.h"
 #include "pipeline/localization/perceive.h"
+#include "pipeline/localization/rival.h"
 #include "pipeline/localization/search.h"
 #include "pipeline/render/depth_raster.h"
 
@@ -26,13 +27,6 @@ constexpr double kNearSpread_px = 1.0;  // an axis of the prior that moves the i
 constexpr double kNearest = 1.8;        // sigmas
 constexpr double kNearRival_px = 4.0;   // a pose that is further off and as good leaves the answer open
 constexpr float kNearRadius = 0.6F;     // of the first start's
-
-// The pose beside a followed one that every image tries: so many sigmas off, a few rounds without a new look, and taken
-// where it shares that much more with the image. It was worked out on one film of a home; on others it holds alike.
-constexpr double kBeside_sigmas = 4.0;
-constexpr int kBesideRounds = 3;
-constexpr float kBesideRadius_px = 4.0F;
-constexpr float kBesideLead = 0.02F;
 
 // Shorter pieces are not matched (expected.cpp); a little of them may be longer from the pose that is found.
 constexpr double kLeastPiece_px = 5.0;
@@ -69,10 +63,10 @@ struct Localizer::State {
         perception(camera),
         expectation(given_expectation ? std::move(given_expectation) : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
-        search(parameters, alternation, perception.camera()) {}
+        search(parameters, alternation, perception.camera()),
+        rival(parameters, alternation) {}
 
   Correction from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
-  [[nodiscard]] Estimate better_beside(const Estimate& followed, const Belief& belief, WorkBudget& budget);
   [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
   /// \param standing  none: the pose was followed, not searched for.
   void judge(const Estimate& estimate, const std::optional<Standing>& standing, Correction& answer) const;
@@ -83,7 +77,7 @@ struct Localizer::State {
   std::unique_ptr<render::Expectation> expectation;
   Alternation alternation;
   Search search;
-  double side = 1.0;  ///< of the followed pose, on which the last image looked.
+  Rival rival;
 };
 
 Localizer::Localizer(const world::Map& map, const geometry::Camera& camera, const LocalizerParameters& parameters,
@@ -95,10 +89,12 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::carried(const geometry::Pose& X_C0C1) {
   state_->search.carried(X_C0C1);
+  state_->rival.carried(X_C0C1);
 }
 
 void Localizer::restart() {
   state_->search.stop();
+  state_->rival.forget();
 }
 
 bool Localizer::searching() const {
@@ -140,30 +136,6 @@ Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belie
   return better.solved ? better : estimate;
 }
 
-// A followed pose may have settled beside the right one, on edges that run along each other: a shelf's board has two, and
-// the books behind it a third. A belief as narrow as its own never leaves there, however little else fits. So with every
-// image one pose is tried that lies to one side of it along what moves the image most of all that is open.
-Estimate Localizer::State::better_beside(const Estimate& followed, const Belief& belief, WorkBudget& budget) {
-  const geometry::Pose& X_WC = followed.solution.X_WC;
-  const geometry::Matrix6d covariance = followed.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
-  const PriorShape shape = PriorShape::of(covariance, alternation.motion_metric(X_WC));
-  side = -side;
-  const geometry::Pose start = geometry::moved(X_WC, side * kBeside_sigmas * shape.axes.col(0));
-  const Belief wider({belief.prior.X_WC, kBeside_sigmas * kBeside_sigmas * belief.prior.covariance});
-  AlternateOptions options;
-  options.rounds = kBesideRounds;
-  options.radius_px = kBesideRadius_px;
-  options.look_first = false;
-  options.look_again = false;
-  const float enough = followed.agreement + kBesideLead;
-  const Estimate beside = alternation.refine(start, wider, perception.edges(), options, budget);
-  if (!beside.solved || beside.agreement < enough) return followed;
-  options.rounds = parameters.iterations;
-  options.look_first = true;
-  const Estimate better = alternation.refine(beside.solution.X_WC, wider, perception.edges(), options, budget);
-  return better.solved && better.agreement > enough ? better : followed;
-}
-
 Correction Localizer::State::from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget) {
   Correction answer;
   AlternateOptions options;
@@ -177,7 +149,7 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
     return answer;
   }
   if (!parameters.search || shape.widest_px() <= kOneStart_px) {
-    if (parameters.search && best.solved) best = better_beside(best, belief, budget);
+    if (parameters.search && best.solved) best = rival.better_than(best, belief, perception.edges(), budget);
     judge(best, std::nullopt, answer);
     return answer;
   }
@@ -239,6 +211,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px) {
       answer = s.from_near_starts(belief, shape, budget);
     } else {
+      s.rival.forget();
       s.search.begin(belief);
     }
   }

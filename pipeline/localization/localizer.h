@@ -37,7 +37,7 @@ class Localizer {
   Correction correct(const ImageView& image, const Prior& prior, WorkBudget& budget,
                      const std::uint8_t* mask = nullptr);
 
-  /// The camera moved between images by X_C0C1: hypotheses under way go along. Without a search under way nothing happens.
+  /// The camera moved between images by X_C0C1: hypotheses under way go along.
   void carried(const geometry::Pose& X_C0C1);
 
   /// Forgets a search under way: the next prior is a new one.

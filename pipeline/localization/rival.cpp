@@ -1,0 +1,92 @@
+#include "pipeline/localization/rival.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "pipeline/localization/search.h"
+
+namespace cgsr::localization {
+namespace {
+
+// Where it is tried: so far off in the image, along what is least sure of the followed pose.
+constexpr double kLeast_px = 2.0;
+constexpr double kMost_px = 5.0;
+constexpr int kDistances = 10;
+constexpr int kAxes = 3;
+constexpr std::uint32_t kProposals = 1000;  // then from the first one on
+constexpr double kFixed_px = 1e-3;          // an axis whose sigma moves the image less is not open
+
+constexpr double kWider = 6.0;  // sigmas of the belief that count as one
+constexpr int kRounds = 3;
+constexpr float kRadius_px = 4.0F;
+constexpr double kSame_px = 1.0;  // no further off it is the followed pose
+
+// An image says so much at most: one that is blurred or half hidden must not decide.
+constexpr float kMostOfAnImage = 0.04F;
+constexpr float kKept = 0.8F;  // of the lead, from image to image
+constexpr float kEnough = 0.06F;
+constexpr int kLeastImages = 2;
+constexpr float kBehind = -0.03F;  // in one image: it is given up
+
+double in_image(const geometry::Vector6d& step, const geometry::Matrix6d& metric) {
+  return std::sqrt(step.dot(metric * step));
+}
+
+}  // namespace
+
+Rival::Rival(const LocalizerParameters& parameters, Alternation& alternation)
+    : alternation_(&alternation), iterations_(parameters.iterations) {}
+
+void Rival::carried(const geometry::Pose& X_C0C1) {
+  if (standing_) standing_->X_WC = geometry::normalized(standing_->X_WC * X_C0C1);
+}
+
+geometry::Pose Rival::proposal(const Estimate& followed, const geometry::Matrix6d& metric) {
+  const geometry::Matrix6d covariance = followed.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
+  const PriorShape shape = PriorShape::of(covariance, metric);
+  Eigen::Matrix<double, kAxes, 1> direction;
+  for (int i = 0; i < kAxes; ++i) direction[i] = even_normal(proposals_, i);
+  direction.normalize();
+  // Sevenths of the way round: near and far take turns.
+  const double distance_px = kLeast_px + (kMost_px - kLeast_px) * (proposals_ * 7 % kDistances) / kDistances;
+  proposals_ = (proposals_ + 1) % kProposals;
+  geometry::Vector6d step = geometry::Vector6d::Zero();
+  for (int i = 0; i < kAxes; ++i) {
+    if (shape.motion_px[i] > kFixed_px) step += direction[i] * distance_px / shape.motion_px[i] * shape.axes.col(i);
+  }
+  return geometry::moved(followed.solution.X_WC, step);
+}
+
+Estimate Rival::better_than(const Estimate& followed, const Belief& belief, const SegmentTable& perceived,
+                            WorkBudget& budget) {
+  const geometry::Matrix6d metric = alternation_->motion_metric(followed.solution.X_WC);
+  const Belief wider({belief.prior.X_WC, kWider * kWider * belief.prior.covariance});
+  AlternateOptions options;
+  options.rounds = kRounds;
+  options.radius_px = kRadius_px;
+  options.look_first = standing_.has_value();
+  options.look_again = false;
+  const geometry::Pose start = standing_ ? standing_->X_WC : proposal(followed, metric);
+  const Estimate beside = alternation_->refine(start, wider, perceived, options, budget);
+  const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
+  const float lead = beside.agreement - followed.agreement;
+  if (!beside.solved || in_image(off, metric) < kSame_px || lead < kBehind) {
+    forget();
+    return followed;
+  }
+  if (!standing_) standing_.emplace();
+  standing_->X_WC = beside.solution.X_WC;
+  standing_->lead = kKept * standing_->lead + std::min(lead, kMostOfAnImage);
+  ++standing_->images;
+  if (standing_->lead < 0.0F) forget();
+  if (!standing_ || standing_->lead < kEnough || standing_->images < kLeastImages) return followed;
+  forget();
+  options.rounds = iterations_;
+  options.look_first = true;
+  const Estimate better = alternation_->refine(beside.solution.X_WC, wider, perceived, options, budget);
+  return better.solved && better.agreement > followed.agreement ? better : followed;
+}
+
+}  // namespace cgsr::localization
