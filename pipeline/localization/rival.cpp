@@ -40,7 +40,12 @@ Rival::Rival(const LocalizerParameters& parameters, Alternation& alternation)
     : alternation_(&alternation), iterations_(parameters.iterations) {}
 
 void Rival::carried(const geometry::Pose& X_C0C1) {
-  if (standing_) standing_->X_WC = geometry::normalized(standing_->X_WC * X_C0C1);
+  X_WC_ = geometry::normalized(X_WC_ * X_C0C1);
+}
+
+void Rival::forget() {
+  images_ = 0;
+  lead_ = 0.0F;
 }
 
 geometry::Pose Rival::proposal(const Estimate& followed, const geometry::Matrix6d& metric) {
@@ -66,9 +71,9 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
   AlternateOptions options;
   options.rounds = kRounds;
   options.radius_px = kRadius_px;
-  options.look_first = standing_.has_value();
+  options.look_first = images_ > 0;
   options.look_again = false;
-  const geometry::Pose start = standing_ ? standing_->X_WC : proposal(followed, metric);
+  const geometry::Pose start = images_ > 0 ? X_WC_ : proposal(followed, metric);
   const Estimate beside = alternation_->refine(start, wider, perceived, options, budget);
   const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
   const float lead = beside.agreement - followed.agreement;
@@ -76,12 +81,11 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
     forget();
     return followed;
   }
-  if (!standing_) standing_.emplace();
-  standing_->X_WC = beside.solution.X_WC;
-  standing_->lead = kKept * standing_->lead + std::min(lead, kMostOfAnImage);
-  ++standing_->images;
-  if (standing_->lead < 0.0F) forget();
-  if (!standing_ || standing_->lead < kEnough || standing_->images < kLeastImages) return followed;
+  X_WC_ = beside.solution.X_WC;
+  lead_ = kKept * lead_ + std::min(lead, kMostOfAnImage);
+  ++images_;
+  if (lead_ < 0.0F) forget();
+  if (lead_ < kEnough || images_ < kLeastImages) return followed;
   forget();
   options.rounds = iterations_;
   options.look_first = true;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "pipeline/localization/alternate.h"
 #include "pipeline/localization/localizer_parameters.h"
@@ -24,21 +23,17 @@ class Rival {
   void carried(const geometry::Pose& X_C0C1);
 
   /// The next image starts anew.
-  void forget() { standing_.reset(); }
+  void forget();
 
  private:
-  struct Standing {
-    geometry::Pose X_WC = geometry::Pose::Identity();
-    float lead = 0.0F;  ///< in agreement with the image, summed over the images and slowly forgotten.
-    int images = 0;
-  };
-
   [[nodiscard]] geometry::Pose proposal(const Estimate& followed, const geometry::Matrix6d& metric);
 
   Alternation* alternation_;
   int iterations_;
   std::uint32_t proposals_ = 0;
-  std::optional<Standing> standing_;
+  geometry::Pose X_WC_ = geometry::Pose::Identity();
+  int images_ = 0;     ///< it has stood; 0: there is none.
+  float lead_ = 0.0F;  ///< in agreement with the image, summed over the images and slowly forgotten.
 };
 
 }  // namespace cgsr::localization
