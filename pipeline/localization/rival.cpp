@@ -22,12 +22,15 @@ constexpr double kWider = 6.0;  // sigmas of the belief that count as one
 constexpr int kRounds = 3;
 constexpr float kRadius_px = 4.0F;
 constexpr double kSame_px = 1.0;  // no further off it is the followed pose
+constexpr int kLeastMatches = 6;  // fewer hold no pose: what is left open would be taken for better
 
+// Of a squared sigma from the followed pose: the farther off, the more must speak for it. Two edges that are taken for each other lie close together.
+constexpr float kFarCounts = 0.001F;
 // An image says so much at most: one that is blurred or half hidden must not decide.
 constexpr float kMostOfAnImage = 0.04F;
 constexpr float kKept = 0.8F;  // of the lead, from image to image
-constexpr float kEnough = 0.06F;
-constexpr int kLeastImages = 2;
+constexpr float kEnough = 0.12F;
+constexpr int kLeastImages = 5;
 constexpr float kBehind = -0.03F;  // in one image: it is given up
 
 double in_image(const geometry::Vector6d& step, const geometry::Matrix6d& metric) {
@@ -66,6 +69,10 @@ geometry::Pose Rival::proposal(const Estimate& followed, const geometry::Matrix6
 
 Estimate Rival::better_than(const Estimate& followed, const Belief& belief, const SegmentTable& perceived,
                             WorkBudget& budget) {
+  if (followed.matches < kLeastMatches) {
+    forget();
+    return followed;
+  }
   const geometry::Matrix6d metric = alternation_->motion_metric(followed.solution.X_WC);
   const Belief wider({belief.prior.X_WC, kWider * kWider * belief.prior.covariance});
   AlternateOptions options;
@@ -76,7 +83,8 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
   const geometry::Pose start = images_ > 0 ? X_WC_ : proposal(followed, metric);
   const Estimate beside = alternation_->refine(start, wider, perceived, options, budget);
   const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
-  const float lead = beside.agreement - followed.agreement;
+  const auto chi2 = static_cast<float>(off.dot(belief.information * off));
+  const float lead = beside.agreement - followed.agreement - kFarCounts * chi2;
   if (!beside.solved || in_image(off, metric) < kSame_px || lead < kBehind) {
     forget();
     return followed;
@@ -89,7 +97,9 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
   forget();
   options.rounds = iterations_;
   options.look_first = true;
-  const Estimate better = alternation_->refine(beside.solution.X_WC, wider, perceived, options, budget);
+  // The belief moves as a whole: it is as sure there as it was here.
+  const Belief moved({beside.solution.X_WC, belief.prior.covariance});
+  const Estimate better = alternation_->refine(beside.solution.X_WC, moved, perceived, options, budget);
   return better.solved && better.agreement > followed.agreement ? better : followed;
 }
 
