@@ -152,6 +152,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
   SolverOptions solver;
   solver.paper = parameters_.method == Method::kPaper;
   solver.steps = 2;
+  solver.robust = options.robust;
   geometry::Pose X_WC = start;
   geometry::Pose looked_from = start;
   bool look_now = options.look_first;

@@ -43,9 +43,13 @@ struct Estimate {
   int rounds = 0;
 };
 
+/// From a belief as narrow as a followed pose's, what lies two pixels off is another edge rather than this one's error: SolverOptions::robust.
+inline constexpr double kFollowedRobust = 0.7;
+
 struct AlternateOptions {
   int rounds = 6;
-  float radius_px = 24.0F;      ///< of the first round.
+  float radius_px = 24.0F;  ///< of the first round.
+  double robust = SolverOptions{}.robust;
   bool look_first = true;       ///< false: the pieces of the last look are good enough.
   bool look_again = true;       ///< when the pose moved far.
   bool whole_matching = false;  ///< radius stays (the paper's).

@@ -29,8 +29,12 @@ double worst_sigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParameters& parameters) {
-  geometry::Matrix6d covariance = estimate.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
+geometry::Matrix6d covariance_in_map(const Estimate& estimate) {
+  return estimate.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
+}
+
+geometry::Matrix6d with_map_error(const geometry::Matrix6d& covariance_in_map, const LocalizerParameters& parameters) {
+  geometry::Matrix6d covariance = covariance_in_map;
   covariance.topLeftCorner<3, 3>().diagonal().array() += parameters.map_sigma_m * parameters.map_sigma_m;
   return covariance;
 }

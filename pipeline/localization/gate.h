@@ -8,8 +8,12 @@
 
 namespace cgsr::localization {
 
-/// \return the covariance of an estimate: what the matches and the prior leave open, and the map's own error.
-geometry::Matrix6d covariance_of(const Estimate& estimate, const LocalizerParameters& parameters);
+/// \return what the matches and the prior leave open of an estimate, in the map as it is.
+geometry::Matrix6d covariance_in_map(const Estimate& estimate);
+
+/// \return the same in the world: the map's own error is added. An image's answer is told with it; but the next image sees the same map, and
+/// a belief that took it for news at each would soon hold nothing of what the odometry and earlier views know.
+geometry::Matrix6d with_map_error(const geometry::Matrix6d& covariance_in_map, const LocalizerParameters& parameters);
 
 /// How an estimate stands among the poses that a search tried.
 struct Standing {

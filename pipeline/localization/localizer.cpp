@@ -92,6 +92,10 @@ void Localizer::carried(const geometry::Pose& X_C0C1) {
   state_->rival.carried(X_C0C1);
 }
 
+geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& belief) const {
+  return with_map_error(belief, state_->parameters);
+}
+
 void Localizer::restart() {
   state_->search.stop();
   state_->rival.forget();
@@ -103,7 +107,8 @@ bool Localizer::searching() const {
 
 void Localizer::State::judge(const Estimate& estimate, const std::optional<Standing>& standing,
                              Correction& answer) const {
-  const geometry::Matrix6d covariance = covariance_of(estimate, parameters);
+  const geometry::Matrix6d in_map = covariance_in_map(estimate);
+  const geometry::Matrix6d covariance = with_map_error(in_map, parameters);
   answer.matches = estimate.matches;
   answer.expected = estimate.expected;
   answer.explained = estimate.explained;
@@ -122,6 +127,7 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   if (!answer.corrected) return;
   answer.X_WC = estimate.solution.X_WC;
   answer.covariance = covariance;
+  answer.belief = in_map;
 }
 
 // With the noise that the matches show: a wide prior must not pull a pose off what is seen well.
@@ -143,16 +149,19 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
   options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * shape.widest_px() + 2.0,
                                                     parameters.match_radius_least_px, parameters.match_radius_px));
   options.look_first = false;  // drawn already, for the prior's width
+  const bool narrow = shape.widest_px() <= kOneStart_px;
+  if (narrow && parameters.method == Method::kGlCorrect) options.robust = kFollowedRobust;
   Estimate best = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
   if (best.rounds == 0) {
     answer.reason = Reason::kNoBudget;
     return answer;
   }
-  if (!parameters.search || shape.widest_px() <= kOneStart_px) {
+  if (!parameters.search || narrow) {
     if (parameters.search && best.solved) best = rival.better_than(best, belief, perception.edges(), budget);
     judge(best, std::nullopt, answer);
     return answer;
   }
+  rival.forget();
   const geometry::Matrix6d metric = alternation.motion_metric(belief.prior.X_WC);
   const auto rank = [](const Estimate& estimate) {
     return estimate.solved ? evidence_of(estimate, Standing{}) : -10.0F;
@@ -192,6 +201,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     answer.reason = reason;
     answer.X_WC = prior.X_WC;
     answer.covariance = prior.covariance;
+    answer.belief = prior.covariance;
     answer.segments = static_cast<int>(s.perception.edges().size());
     answer.looks = s.alternation.looks();
     return answer;
@@ -226,6 +236,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   if (!answer.corrected) {
     answer.X_WC = prior.X_WC;
     answer.covariance = prior.covariance;
+    answer.belief = prior.covariance;
   }
   answer.segments = static_cast<int>(s.perception.edges().size());
   answer.looks = s.alternation.looks();

@@ -40,6 +40,9 @@ class Localizer {
   /// The camera moved between images by X_C0C1: hypotheses under way go along.
   void carried(const geometry::Pose& X_C0C1);
 
+  /// \return the covariance in the world of a belief in the map as it is (Correction::belief).
+  [[nodiscard]] geometry::Matrix6d in_world(const geometry::Matrix6d& belief) const;
+
   /// Forgets a search under way: the next prior is a new one.
   void restart();
 

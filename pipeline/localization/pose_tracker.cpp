@@ -56,6 +56,7 @@ void PoseTracker::start(const Prior& prior) {
   now_ = TrackedPose{};
   now_.X_WC = prior.X_WC;
   now_.covariance = prior.covariance;
+  belief_ = prior.covariance;
   driven_m_ = 0.0;
   turned_rad_ = 0.0;
 }
@@ -67,7 +68,7 @@ void PoseTracker::moved(const Pose& X_R0R1) {
   // An error of the direction swings what comes after it.
   Matrix6d F = Matrix6d::Identity();
   F.topRightCorner<3, 3>() << 0.0, way_W.z(), -way_W.y(), -way_W.z(), 0.0, way_W.x(), way_W.y(), -way_W.x(), 0.0;
-  now_.covariance = F * now_.covariance * F.transpose();
+  belief_ = F * belief_ * F.transpose();
   now_.X_WC = geometry::normalized(now_.X_WC * X_C0C1);
 
   const double way_m = X_R0R1.translation().norm();
@@ -77,14 +78,15 @@ void PoseTracker::moved(const Pose& X_R0R1) {
   const double turn = grown(parameters_.slip_turn, turned_rad_, turn_rad) + drift_rad * drift_rad;
   driven_m_ += way_m;
   turned_rad_ += turn_rad;
-  now_.covariance(0, 0) += place;
-  now_.covariance(1, 1) += place;
-  now_.covariance(5, 5) += turn;
+  belief_(0, 0) += place;
+  belief_(1, 1) += place;
+  belief_(5, 5) += turn;
   if (!parameters_.floor) {
-    now_.covariance(2, 2) += place;
-    now_.covariance(3, 3) += turn;
-    now_.covariance(4, 4) += turn;
+    belief_(2, 2) += place;
+    belief_(3, 3) += turn;
+    belief_(4, 4) += turn;
   }
+  now_.covariance = localizer_->in_world(belief_);
   localizer_->carried(X_C0C1);
 }
 
@@ -104,7 +106,7 @@ void PoseTracker::flatten() {
   now_.X_WC.linear() = geometry::rotation_of(kTiltKept * off_level) * level.linear();
   now_.X_WC.translation().z() = level.translation().z();
 
-  Matrix6d& covariance = now_.covariance;
+  Matrix6d& covariance = belief_;
   covariance.row(2).setZero();
   covariance.col(2).setZero();
   covariance(2, 2) = parameters_.height_m * parameters_.height_m;
@@ -123,40 +125,45 @@ void PoseTracker::widen() {
   for (int i = 0; i < 6; ++i) {
     if (parameters_.floor && i >= 2 && i <= 4) continue;
     const double most = i < 3 ? parameters_.wide_m : wide_rad;
-    const double sigma = std::sqrt(now_.covariance(i, i));
+    const double sigma = std::sqrt(belief_(i, i));
     // Scaling rows and columns alike keeps it a covariance.
     const double factor = std::max(1.0, std::min(parameters_.widen, most / sigma));
-    now_.covariance.row(i) *= factor;
-    now_.covariance.col(i) *= factor;
+    belief_.row(i) *= factor;
+    belief_.col(i) *= factor;
   }
 }
 
 // Carried along for so long that only a search would find it again.
 bool PoseTracker::has_outgrown() const {
-  const double place = std::sqrt(std::max(now_.covariance(0, 0), now_.covariance(1, 1)));
-  return place > parameters_.lost_m || std::sqrt(now_.covariance(5, 5)) > parameters_.lost_deg * kDegree;
+  const double place = std::sqrt(std::max(belief_(0, 0), belief_(1, 1)));
+  return place > parameters_.lost_m || std::sqrt(belief_(5, 5)) > parameters_.lost_deg * kDegree;
 }
 
 const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask) {
   if (parameters_.floor) flatten();
-  now_.correction = localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = now_.covariance}, budget, mask);
+  now_.correction = localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = belief_}, budget, mask);
   if (now_.correction.corrected) {
     now_.X_WC = now_.correction.X_WC;
-    now_.covariance = now_.correction.covariance;
+    belief_ = now_.correction.belief;
     now_.images_since_correction = 0;
     now_.failures = 0;
     driven_m_ = 0.0;
     turned_rad_ = 0.0;
     now_.state = now_.state == TrackState::kLost ? TrackState::kRecovered : TrackState::kTracking;
-    return now_;
+  } else {
+    was_not_corrected();
   }
+  now_.covariance = localizer_->in_world(belief_);
+  return now_;
+}
+
+void PoseTracker::was_not_corrected() {
   ++now_.images_since_correction;
   if (now_.state == TrackState::kRecovered) now_.state = TrackState::kTracking;
   if (!shows_nothing(now_.correction.reason)) ++now_.failures;
   const bool outgrown = now_.state == TrackState::kTracking && has_outgrown();
   if (outgrown || now_.failures >= parameters_.lost_after) now_.state = TrackState::kLost;
   if (now_.state == TrackState::kLost && !says_nothing(now_.correction.reason)) widen();
-  return now_;
 }
 
 }  // namespace cgsr::localization

@@ -10,7 +10,7 @@ namespace cgsr::localization {
 struct PoseTrackerParameters {
   double slip = 0.05;
   double slip_turn = 0.05;
-  double drift_m = 0.002;
+  double drift_m = 0.0005;
   double drift_deg = 0.1;
   double tilt_deg = 0.5;
   double level_deg = 0.1;
@@ -95,12 +95,14 @@ class PoseTracker {
  private:
   void flatten();
   void widen();
+  void was_not_corrected();
   [[nodiscard]] bool has_outgrown() const;
 
   Localizer* localizer_;
   geometry::Pose X_RC_;
   PoseTrackerParameters parameters_;
   TrackedPose now_;
+  geometry::Matrix6d belief_ = geometry::Matrix6d::Zero();  ///< in the map as it is; now_'s has the map's error in it.
   double pitch_rad_ = 0.0;
   double axle_height_m_ = 0.0;
   double driven_m_ = 0.0;  ///< since the last correction: slip adds up along it.

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "pipeline/localization/gate.h"
 #include "pipeline/localization/search.h"
 
 namespace cgsr::localization {
@@ -40,7 +39,7 @@ double in_image(const geometry::Vector6d& step, const geometry::Matrix6d& metric
 }  // namespace
 
 Rival::Rival(const LocalizerParameters& parameters, Alternation& alternation)
-    : alternation_(&alternation), iterations_(parameters.iterations) {}
+    : alternation_(&alternation), parameters_(parameters) {}
 
 void Rival::carried(const geometry::Pose& X_C0C1) {
   X_WC_ = geometry::normalized(X_WC_ * X_C0C1);
@@ -52,8 +51,7 @@ void Rival::forget() {
 }
 
 geometry::Pose Rival::proposal(const Estimate& followed, const geometry::Matrix6d& metric) {
-  const geometry::Matrix6d covariance = followed.solution.information.ldlt().solve(geometry::Matrix6d::Identity());
-  const PriorShape shape = PriorShape::of(covariance, metric);
+  const PriorShape shape = PriorShape::of(with_map_error(covariance_in_map(followed), parameters_), metric);
   Eigen::Matrix<double, kAxes, 1> direction;
   for (int i = 0; i < kAxes; ++i) direction[i] = even_normal(proposals_, i);
   direction.normalize();
@@ -74,16 +72,20 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
     return followed;
   }
   const geometry::Matrix6d metric = alternation_->motion_metric(followed.solution.X_WC);
-  const Belief wider({belief.prior.X_WC, kWider * kWider * belief.prior.covariance});
+  // Edges that lead astray do so for many images, and a belief in the map as it is grows sure of them.
+  const geometry::Matrix6d covariance = with_map_error(belief.prior.covariance, parameters_);
+  const Belief doubted({belief.prior.X_WC, covariance});
+  const Belief wider({belief.prior.X_WC, kWider * kWider * covariance});
   AlternateOptions options;
   options.rounds = kRounds;
   options.radius_px = kRadius_px;
+  options.robust = kFollowedRobust;
   options.look_first = images_ > 0;
   options.look_again = false;
   const geometry::Pose start = images_ > 0 ? X_WC_ : proposal(followed, metric);
   const Estimate beside = alternation_->refine(start, wider, perceived, options, budget);
   const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
-  const auto chi2 = static_cast<float>(off.dot(belief.information * off));
+  const auto chi2 = static_cast<float>(off.dot(doubted.information * off));
   const float lead = beside.agreement - followed.agreement - kFarCounts * chi2;
   if (!beside.solved || in_image(off, metric) < kSame_px || lead < kBehind) {
     forget();
@@ -95,10 +97,10 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
   if (lead_ < 0.0F) forget();
   if (lead_ < kEnough || images_ < kLeastImages) return followed;
   forget();
-  options.rounds = iterations_;
+  options.rounds = parameters_.iterations;
   options.look_first = true;
-  // The belief moves as a whole: it is as sure there as it was here.
-  const Belief moved({beside.solution.X_WC, belief.prior.covariance});
+  // The belief moves as a whole: it is as sure there as the doubted one was here.
+  const Belief moved({beside.solution.X_WC, covariance});
   const Estimate better = alternation_->refine(beside.solution.X_WC, moved, perceived, options, budget);
   return better.solved && better.agreement > followed.agreement ? better : followed;
 }

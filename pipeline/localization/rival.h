@@ -29,7 +29,7 @@ class Rival {
   [[nodiscard]] geometry::Pose proposal(const Estimate& followed, const geometry::Matrix6d& metric);
 
   Alternation* alternation_;
-  int iterations_;
+  LocalizerParameters parameters_;
   std::uint32_t proposals_ = 0;
   geometry::Pose X_WC_ = geometry::Pose::Identity();
   int images_ = 0;     ///< it has stood; 0: there is none.

@@ -23,7 +23,7 @@ Estimate good() {
 
 Reason judged(const Estimate& estimate, const std::optional<Standing>& standing = Standing{0.2F, 2.0}) {
   const LocalizerParameters parameters;
-  return gate(estimate, standing, covariance_of(estimate, parameters), parameters);
+  return gate(estimate, standing, with_map_error(covariance_in_map(estimate), parameters), parameters);
 }
 
 TEST(Gate, LetsThroughWhatIsSure) {
@@ -84,7 +84,7 @@ TEST(Gate, AFollowedPoseNeedsLessThanOneThatWasSearched) {
 TEST(Gate, CovarianceHoldsTheMapsOwnError) {
   LocalizerParameters parameters;
   parameters.map_sigma_m = 0.02;
-  const geometry::Matrix6d covariance = covariance_of(good(), parameters);
+  const geometry::Matrix6d covariance = with_map_error(covariance_in_map(good()), parameters);
   EXPECT_NEAR(covariance(0, 0), 1e-6 + 4e-4, 1e-12);
   EXPECT_NEAR(covariance(3, 3), 1e-6, 1e-12);
 }

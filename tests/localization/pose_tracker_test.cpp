@@ -138,7 +138,28 @@ TEST_F(Tracking, RecoversFromBeingCarriedAway) {
     recovered = now.correction.corrected;
   }
   ASSERT_TRUE(recovered);
+  // The first pose that explains the image may be off by an edge's width or two: half a second later it is not.
+  for (int i = 0; i < 15; ++i) {
+    tracker_.moved(Pose::Identity());
+    see(X_WR);
+  }
   EXPECT_LT(geometry::step_between(X_WR * X_RC_, tracker_.now().X_WC).head<3>().norm(), 0.03);
+}
+
+TEST_F(Tracking, AnErrorOfTheMapIsNoNewsWithEveryImage) {
+  const Pose X_WR = geometry::pose_on_floor(1.0, 1.6, 0.2);
+  tracker_.start(prior_at(X_WR * X_RC_, kKnown));
+  for (int i = 0; i < 100; ++i) {
+    tracker_.moved(Pose::Identity());
+    ASSERT_TRUE(see(X_WR).correction.corrected);
+  }
+  const double map_sigma_m = LocalizerParameters{}.map_sigma_m;
+  const Correction& last = tracker_.now().correction;
+  EXPECT_TRUE((tracker_.now().covariance - last.covariance).isZero(1e-12));
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_GE(std::sqrt(last.covariance(i, i)), map_sigma_m) << "never surer of the place in the world than the map is";
+    EXPECT_LT(std::sqrt(last.belief(i, i)), 0.8 * map_sigma_m) << "but of the place in the map";
+  }
 }
 
 TEST_F(Tracking, TheBeliefGrowsAlongTheWay) {
