@@ -48,11 +48,11 @@ inline constexpr double kFollowedRobust = 0.7;
 
 struct AlternateOptions {
   int rounds = 6;
-  float radius_px = 24.0F;  ///< of the first round.
-  double robust = SolverOptions{}.robust;
-  bool look_first = true;       ///< false: the pieces of the last look are good enough.
-  bool look_again = true;       ///< when the pose moved far.
-  bool whole_matching = false;  ///< radius stays (the paper's).
+  float radius_px = 24.0F;                 ///< of the first round.
+  double robust = SolverOptions{}.robust;  ///< likewise there.
+  bool look_first = true;                  ///< false: the pieces of the last look are good enough.
+  bool look_again = true;                  ///< when the pose moved far.
+  bool whole_matching = false;             ///< radius stays (the paper's).
   bool measured_noise =
       false;  ///< the pose out of the noise that the matches show; its covariance stays the stated one's.
 };

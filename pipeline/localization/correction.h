@@ -61,15 +61,14 @@ std::string_view name_of(Reason reason);
 struct Correction {
   bool corrected = false;
   Reason reason = Reason::kNoBudget;
-  geometry::Pose X_WC = geometry::Pose::Identity();            ///< not corrected: the prior's.
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< likewise; in the world, with the map's own error.
-  geometry::Matrix6d belief =
-      geometry::Matrix6d::Zero();  ///< likewise; in the map as it is: what the next image begins with.
-  int matches = 0;                 ///< pieces of edges that found a segment.
-  float rms_px = 0.0F;             ///< of the distances d1 and d2, in pixels of the grey image that was worked on.
-  float explained = 0.0F;          ///< share of the expected visible length that was found, 0..1.
-  float lead = 0.0F;      ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
-  float evidence = 0.0F;  ///< what the gate judged (gate.h).
+  geometry::Pose X_WC = geometry::Pose::Identity();  ///< not corrected: the prior's.
+  /// Likewise; in the map as it is, which the next image sees again. Localizer::in_world adds the map's own error.
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  int matches = 0;         ///< pieces of edges that found a segment.
+  float rms_px = 0.0F;     ///< of the distances d1 and d2, in pixels of the grey image that was worked on.
+  float explained = 0.0F;  ///< share of the expected visible length that was found, 0..1.
+  float lead = 0.0F;       ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
+  float evidence = 0.0F;   ///< what the gate judged (gate.h).
   float prior_chi2 = 0.0F;
   int segments = 0;  ///< perceived.
   int expected = 0;  ///< visible pieces of edges.

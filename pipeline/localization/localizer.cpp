@@ -92,8 +92,8 @@ void Localizer::carried(const geometry::Pose& X_C0C1) {
   state_->rival.carried(X_C0C1);
 }
 
-geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& belief) const {
-  return with_map_error(belief, state_->parameters);
+geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& covariance) const {
+  return with_map_error(covariance, state_->parameters);
 }
 
 void Localizer::restart() {
@@ -107,8 +107,7 @@ bool Localizer::searching() const {
 
 void Localizer::State::judge(const Estimate& estimate, const std::optional<Standing>& standing,
                              Correction& answer) const {
-  const geometry::Matrix6d in_map = covariance_in_map(estimate);
-  const geometry::Matrix6d covariance = with_map_error(in_map, parameters);
+  const geometry::Matrix6d covariance = covariance_in_map(estimate);
   answer.matches = estimate.matches;
   answer.expected = estimate.expected;
   answer.explained = estimate.explained;
@@ -117,7 +116,7 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
   answer.evidence = standing ? evidence_of(estimate, *standing) : estimate.explained;
   if (parameters.gate) {
-    answer.reason = gate(estimate, standing, covariance, parameters);
+    answer.reason = gate(estimate, standing, with_map_error(covariance, parameters), parameters);
   } else if (estimate.solved) {
     answer.reason = Reason::kNone;
   } else {
@@ -127,7 +126,6 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   if (!answer.corrected) return;
   answer.X_WC = estimate.solution.X_WC;
   answer.covariance = covariance;
-  answer.belief = in_map;
 }
 
 // With the noise that the matches show: a wide prior must not pull a pose off what is seen well.
@@ -201,7 +199,6 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     answer.reason = reason;
     answer.X_WC = prior.X_WC;
     answer.covariance = prior.covariance;
-    answer.belief = prior.covariance;
     answer.segments = static_cast<int>(s.perception.edges().size());
     answer.looks = s.alternation.looks();
     return answer;
@@ -236,7 +233,6 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
   if (!answer.corrected) {
     answer.X_WC = prior.X_WC;
     answer.covariance = prior.covariance;
-    answer.belief = prior.covariance;
   }
   answer.segments = static_cast<int>(s.perception.edges().size());
   answer.looks = s.alternation.looks();

@@ -40,8 +40,8 @@ class Localizer {
   /// The camera moved between images by X_C0C1: hypotheses under way go along.
   void carried(const geometry::Pose& X_C0C1);
 
-  /// \return the covariance in the world of a belief in the map as it is (Correction::belief).
-  [[nodiscard]] geometry::Matrix6d in_world(const geometry::Matrix6d& belief) const;
+  /// \return a covariance in the map as it is (Correction's) with the map's own error: that in the world.
+  [[nodiscard]] geometry::Matrix6d in_world(const geometry::Matrix6d& covariance) const;
 
   /// Forgets a search under way: the next prior is a new one.
   void restart();

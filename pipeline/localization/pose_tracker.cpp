@@ -144,7 +144,7 @@ const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, 
   now_.correction = localizer_->correct(image, {.X_WC = now_.X_WC, .covariance = belief_}, budget, mask);
   if (now_.correction.corrected) {
     now_.X_WC = now_.correction.X_WC;
-    belief_ = now_.correction.belief;
+    belief_ = now_.correction.covariance;
     now_.images_since_correction = 0;
     now_.failures = 0;
     driven_m_ = 0.0;

@@ -60,8 +60,8 @@ std::string_view name_of(TrackState state);
 struct TrackedPose {
   TrackState state = TrackState::kUnsure;
   geometry::Pose X_WC = geometry::Pose::Identity();
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
-  Correction correction;  ///< of this image: what happened and why.
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< in the world.
+  Correction correction;                                       ///< of this image: what happened and why.
   int images_since_correction = 0;
   int failures = 0;  ///< of those, the ones that should have corrected it.
 };
