@@ -18,6 +18,14 @@ constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
 constexpr double kLeastNoise = 0.3;  // of the stated noise
 
+// A model is measured as well as it is small.
+constexpr double kMapSigmaOfSize = 0.001;
+// Where edges meet, their slopes mix: a perceived one stops this far from its corner, give or take. Farther off it was broken, or another
+// one goes on where it ends.
+constexpr float kShortOfCorner_px = 1.5F;
+constexpr double kCornerSigma_px = 3.0;
+constexpr float kCornerReach_px = 6.0F;
+
 constexpr double kCloseBy = 0.2;    // of a map's size: no further off it is the camera's surroundings
 constexpr float kBeside_px = 2.0F;  // of a line, what lies on either side of it
 
@@ -41,6 +49,7 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
   visible_.reserve(static_cast<std::size_t>(parameters.pieces_most));
   lines_.reserve(static_cast<std::size_t>(parameters.pieces_most) * 4);
   for (const Eigen::Vector3f& vertex : map.vertices) bounds_.extend(vertex.cast<double>());
+  map_sigma_m_ = std::min(parameters.map_sigma_m, kMapSigmaOfSize * bounds_.diagonal().norm());
   // A low field is stood on, not in.
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kCloseBy * bounds_.diagonal().norm());
   bounds_.min() -= margin;
@@ -90,7 +99,7 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
   const bool paper = parameters_.method == Method::kPaper;
   const double system = parameters_.system_sigma_px * parameters_.system_sigma_px;
   for (const Match& match : matches) {
-    if (lines_.size() + 2 > lines_.capacity()) break;
+    if (lines_.size() + 4 > lines_.capacity()) break;
     const PerceivedEdge& edge = perceived.edges()[match.perceived];
     const ProjectedPiece& piece = view_.projected()[match.projected];
     LineDistance line;
@@ -100,12 +109,35 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
       // A weak edge is rather a shadow's or a pattern's than the map's, and lies beside it without being far off.
       line.weight = static_cast<double>(edge.weight) *
                     static_cast<double>(std::clamp(match.overlap_px() / kWholeOverlap_px, kLeastShare, 1.0F));
-      line.sigma_px = std::sqrt(system + static_cast<double>(edge.sigma_px) * edge.sigma_px);
+      // The map's error is the same for each image and another for each thing in it: from near, it is what is seen.
+      const double depth_m = std::max(kLeastDepth_m, 0.5 * static_cast<double>(piece.depth0_m + piece.depth1_m));
+      const double map_px = camera_.fx_px * map_sigma_m_ / depth_m;
+      line.sigma_px = std::sqrt(system + map_px * map_px + static_cast<double>(edge.sigma_px) * edge.sigma_px);
     }
     line.p_W = view_.point_at(piece, match.from_px);
     lines_.push_back(line);
     line.p_W = view_.point_at(piece, match.to_px);
     lines_.push_back(line);
+    if (parameters_.method == Method::kGlCorrect) gather_ends(piece, edge, line);
+  }
+}
+
+// A line's distances leave its own direction open. Where a perceived edge ends at the expected one's corner, that holds it too, if not as
+// well: of views that show edges of next to one direction it is all there is.
+void Alternation::gather_ends(const ProjectedPiece& piece, const PerceivedEdge& edge, LineDistance end) {
+  end.end = true;
+  end.sigma_px = std::hypot(end.sigma_px, kCornerSigma_px);
+  const float along = piece.direction.dot(edge.direction) > 0.0F ? 1.0F : -1.0F;
+  for (const float side : {-1.0F, 1.0F}) {
+    if (side < 0.0F ? !view_.ends_at_first(piece) : !view_.ends_at_last(piece)) continue;
+    const Eigen::Vector2f outward = side * along * edge.direction;
+    const Eigen::Vector2f seen = edge.middle + (edge.half_length + kShortOfCorner_px) * outward;
+    const Eigen::Vector2f expected = piece.middle + side * piece.half_length * piece.direction;
+    if (std::abs((seen - expected).dot(outward)) > kCornerReach_px) continue;
+    end.p_W = view_.point_at(piece, side * piece.half_length);
+    end.normal = outward.cast<double>();
+    end.offset_px = end.normal.dot(seen.cast<double>());
+    lines_.push_back(end);
   }
 }
 
@@ -170,7 +202,9 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
     if (options.measured_noise && solution.solved) {
       const double noise = std::clamp(solution.rms_px / parameters_.system_sigma_px, kLeastNoise, 1.0);
-      for (LineDistance& line : lines_) line.sigma_px *= noise;
+      for (LineDistance& line : lines_) {
+        if (!line.end) line.sigma_px *= noise;
+      }
       const Solution measured = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
       if (measured.solved) solution.X_WC = measured.X_WC;
     }

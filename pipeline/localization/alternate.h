@@ -82,12 +82,14 @@ class Alternation {
 
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
+  void gather_ends(const ProjectedPiece& piece, const PerceivedEdge& edge, LineDistance end);
   [[nodiscard]] float length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const;
   void judge(std::span<const Match> matches, const SegmentTable& perceived, const geometry::Pose& X_WC,
              Estimate& estimate) const;
 
   LocalizerParameters parameters_;
   Eigen::AlignedBox3d bounds_;  ///< of the map and what is close by.
+  double map_sigma_m_ = 0.0;
   render::Expectation* expectation_;
   geometry::Camera camera_;
   ExpectedView view_;

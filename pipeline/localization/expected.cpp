@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kNear_m = 0.05F;
 constexpr float kLeastLength_px = 6.0F;
+constexpr float kSeenToItsEnd_px = 1.5F;  // no more of an edge is missing than the expectation's raster leaves out
 constexpr float kBorder_px = 2.0F;  // edges are not found nearer to the image's border
 
 // Of one illumination on both sides, or not: then a crease's light may differ by this factor on its own.
@@ -164,7 +165,14 @@ void ExpectedView::take(std::span<const render::VisiblePiece> visible) {
     const world::Edge& edge = map_->edges[piece.edge];
     const Eigen::Vector3f& a = map_->vertices[edge.vertices[0]];
     const Eigen::Vector3f& b = map_->vertices[edge.vertices[1]];
-    pieces_.push_back({.edge = piece.edge, .p0_W = a + piece.from * (b - a), .p1_W = a + piece.to * (b - a)});
+    const float whole_px = (piece.p1 - piece.p0).norm() / std::max(1e-6F, piece.to - piece.from);
+    const bool ends_at_p0 = piece.from * whole_px < kSeenToItsEnd_px;
+    const bool ends_at_p1 = (1.0F - piece.to) * whole_px < kSeenToItsEnd_px;
+    pieces_.push_back({.edge = piece.edge,
+                       .p0_W = a + (ends_at_p0 ? 0.0F : piece.from) * (b - a),
+                       .p1_W = a + (ends_at_p1 ? 1.0F : piece.to) * (b - a),
+                       .ends_at_p0 = ends_at_p0,
+                       .ends_at_p1 = ends_at_p1});
   }
 }
 

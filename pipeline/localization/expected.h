@@ -30,6 +30,8 @@ struct ExpectedPiece {
   std::uint32_t edge = 0;
   Eigen::Vector3f p0_W = Eigen::Vector3f::Zero();
   Eigen::Vector3f p1_W = Eigen::Vector3f::Zero();
+  bool ends_at_p0 = false;  ///< the edge itself does: nothing in front hides the rest of it.
+  bool ends_at_p1 = false;
 };
 
 /// ... and in the image of a camera without lens.
@@ -63,6 +65,14 @@ class ExpectedView {
 
   /// The point of a projected piece that is seen `along` pixels from its middle.
   [[nodiscard]] Eigen::Vector3d point_at(const ProjectedPiece& piece, float along) const;
+
+  /// Whether the edge itself ends where a projected piece does, neither hidden nor cut off by the image's border.
+  [[nodiscard]] bool ends_at_first(const ProjectedPiece& piece) const {
+    return piece.from <= 0.0F && pieces_[piece.piece].ends_at_p0;
+  }
+  [[nodiscard]] bool ends_at_last(const ProjectedPiece& piece) const {
+    return piece.to >= 1.0F && pieces_[piece.piece].ends_at_p1;
+  }
 
  private:
   const world::Map* map_;

@@ -40,7 +40,7 @@ struct LocalizerParameters {
   double explained_tracking = 0.3;
   double evidence_least = 0.42;
   double prior_chi2_most = 18.5;  // exceeded by one right pose in 200: chi square of six numbers
-  double sigma_most_m = 0.06;
+  double sigma_most_m = 0.1;
   double sigma_most_deg = 3.5;
   double rms_most_px = 1.35;
   int pieces_most = 1200;
@@ -56,7 +56,7 @@ struct LocalizerParameters {
                  "a pose that moved the image further looks again at what is visible");
     visit.number("system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
                  "error of camera and map in the image, beside the segment's own");
-    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's place, in every covariance");
+    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's places: of each match, and of every pose");
     visit.number("match_angle_deg", self.match_angle_deg, {1.0, 45.0}, "deg", "largest difference of direction");
     visit.number("match_radius_px", self.match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
     visit.number("match_radius_least_px", self.match_radius_least_px, {1.0, 50.0}, "px",

@@ -97,6 +97,7 @@ void summarise(std::span<const LineDistance> lines, const Prior& prior, const Ma
     const double inverse_variance = 1.0 / (line.sigma_px * line.sigma_px);
     const double weight = line.weight * weight_of(distance * distance * inverse_variance, robust);
     accumulate(A, g, J, weight * inverse_variance, distance);
+    if (line.end) continue;
     squares += weight * distance * distance;
     weights += weight;
   }

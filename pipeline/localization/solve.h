@@ -17,6 +17,7 @@ struct LineDistance {
   double offset_px = 0.0;                             ///< normal . p on the line.
   double sigma_px = 1.0;
   double weight = 1.0;  ///< how sure it is that the line is the map's, 0..1: what it counts, however near it lies.
+  bool end = false;     ///< along an edge, of its end: neither d1 nor d2, and no part of Solution::rms_px.
 };
 
 struct SolverOptions {
