@@ -13,7 +13,7 @@ namespace {
 constexpr float kNear_m = 0.05F;
 constexpr float kLeastLength_px = 6.0F;
 constexpr float kSeenToItsEnd_px = 1.5F;  // no more of an edge is missing than the expectation's raster leaves out
-constexpr float kBorder_px = 2.0F;  // edges are not found nearer to the image's border
+constexpr float kBorder_px = 2.0F;        // edges are not found nearer to the image's border
 
 // Of one illumination on both sides, or not: then a crease's light may differ by this factor on its own.
 constexpr float kLeastRatioFlat = 1.25F;

@@ -56,7 +56,8 @@ struct LocalizerParameters {
                  "a pose that moved the image further looks again at what is visible");
     visit.number("system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
                  "error of camera and map in the image, beside the segment's own");
-    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's places: of each match, and of every pose");
+    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
+                 "error of the map's places: of each match, and of every pose");
     visit.number("match_angle_deg", self.match_angle_deg, {1.0, 45.0}, "deg", "largest difference of direction");
     visit.number("match_radius_px", self.match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
     visit.number("match_radius_least_px", self.match_radius_least_px, {1.0, 50.0}, "px",

@@ -98,6 +98,50 @@ TEST(Expected, BothBordersOfATapeAndTheFootOfABoxKnowTheirBrighterSide) {
   EXPECT_EQ(foot, 1);
 }
 
+// A corner holds a pose; what hides the rest of an edge, or the image's border, is none.
+TEST(Expected, AnEdgeEndsWhereItsLastPieceDoesAndNothingHidesOrCutsIt) {
+  MapBuilder b;
+  b.rectangle({2, -0.5F, 0.5F}, {0, 1, 0}, {0, 0, 0.2F}, b.grey(0.9F));
+  ExpectedView view(b.map, 100);
+  const geometry::Pose whole_in_view = in_small_room(0.0, 0.0, 0.0);
+  const auto pieces = projected(b.map, whole_in_view, view);
+  ASSERT_EQ(pieces.size(), 4U);
+  for (const ProjectedPiece& piece : pieces) {
+    EXPECT_TRUE(view.ends_at_first(piece));
+    EXPECT_TRUE(view.ends_at_last(piece));
+  }
+
+  EveryEdge every(b.map);
+  std::vector<render::VisiblePiece> visible;
+  visible.reserve(100);
+  every.look(whole_in_view, small_camera(), visible);
+  const float whole_px = (visible[0].p1 - visible[0].p0).norm();
+  const auto seen_to = [&](float to) {
+    render::VisiblePiece piece = visible[0];
+    piece.p1 = piece.p0 + to * (piece.p1 - piece.p0);
+    piece.to = to;
+    view.take(std::vector{piece});
+    view.project(whole_in_view, small_camera());
+    return view.projected()[0];
+  };
+  EXPECT_TRUE(view.ends_at_first(seen_to(0.5F)));
+  EXPECT_FALSE(view.ends_at_last(seen_to(0.5F))) << "hidden from there on";
+  const world::Edge& edge = b.map.edges[visible[0].edge];
+  const ProjectedPiece nearly = seen_to(1.0F - 1.0F / whole_px);
+  EXPECT_TRUE(view.ends_at_last(nearly)) << "a pixel short of it";
+  EXPECT_TRUE(view.pieces()[nearly.piece].p1_W.isApprox(b.map.vertices[edge.vertices[1]]));
+
+  const geometry::Pose half_out_of_view = in_small_room(0.0, 0.0, 0.6);
+  int cut = 0;
+  for (const ProjectedPiece& piece : projected(b.map, half_out_of_view, view)) {
+    const bool level = std::abs(piece.direction.x()) > 0.5F;
+    if (!level) continue;
+    EXPECT_NE(view.ends_at_first(piece), view.ends_at_last(piece));
+    ++cut;
+  }
+  EXPECT_EQ(cut, 2);
+}
+
 TEST(Expected, WhatIsBehindOrOutsideIsLeftOut) {
   const world::Map map = small_room();
   const geometry::Pose X_WC = in_small_room(2.0, 2.0, 0.0);

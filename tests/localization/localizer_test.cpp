@@ -17,6 +17,7 @@ namespace {
 using geometry::Pose;
 using geometry::Vector6d;
 using testing::in_small_room;
+using testing::MapBuilder;
 using testing::Picture;
 using testing::RandomNumbers;
 using testing::small_room;
@@ -77,6 +78,38 @@ TEST(Localizer, CorrectsANarrowPriorFromOneImage) {
     EXPECT_LT(error.direction_deg, 0.6);
     EXPECT_GE(answer.matches, 10);
   }
+}
+
+/// Strips of tape on a wall, all level: what is upright of them is too short to be seen.
+world::Map wall_of_strips() {
+  MapBuilder b;
+  const std::uint32_t wall = b.rectangle({2.5F, 8, -4}, {0, -16, 0}, {0, 0, 8}, b.grey(0.2F));
+  for (const float height_m : {0.1F, 0.35F, 0.6F, 0.85F}) {
+    const float left_m = height_m < 0.5F ? 0.5F : 0.7F;
+    b.rectangle({2.498F, left_m, height_m}, {0, -1.1F, 0}, {0, 0, 0.04F}, b.grey(0.8F), wall);
+  }
+  return b.map;
+}
+
+// The distances of level lines say nothing of a step to the side; where they end does.
+TEST(Localizer, CornersHoldThePoseAlongParallelEdges) {
+  const world::Map map = wall_of_strips();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  double moved_m = 0.0;
+  for (const double off_m : {-0.03, -0.015, 0.015, 0.03}) {
+    const Pose truth = in_small_room(0.0, 0.0, 0.0);
+    const Picture picture(map, truth, camera, 1.5, 1);
+    Prior prior = prior_at(truth, {.x_m = 0.02, .y_m = 0.03, .z_m = 0.005, .heading_rad = 0.001, .tilt_rad = 0.001});
+    prior.X_WC.translation().y() += off_m;
+    int images = 0;
+    const Correction answer = answer_of(localizer, picture.view(), prior, images);
+    ASSERT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_LT(std::abs(answer.X_WC.translation().y() - truth.translation().y()), 0.5 * std::abs(off_m));
+    EXPECT_LT(std::sqrt(answer.covariance(1, 1)), 0.02);
+    moved_m += std::abs(answer.X_WC.translation().y() - prior.X_WC.translation().y());
+  }
+  EXPECT_GT(moved_m, 0.06);
 }
 
 // Too wide for one start, too narrow for a search: a few starts, still in one image. One start alone is caught by the other border of a tape.

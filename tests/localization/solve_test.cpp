@@ -101,6 +101,28 @@ TEST(SolveProperty, ErrorsAreAsLargeAsTheCovarianceSays) {
   EXPECT_NEAR(chi2 / kTrials, 6.0, 0.8);  // 300 draws of a chi-square of six: standard error 0.2
 }
 
+TEST(Solve, AnEdgesEndPullsThePoseAndIsNoPartOfTheResidual) {
+  RandomNumbers random(6);
+  const Pose truth = some_pose(random);
+  auto lines = lines_at(truth, 20, 0.3, random);
+  const Prior prior = prior_at(truth, PriorSigmas::free());
+  const Matrix6d information = prior.covariance.inverse();
+  const auto found = [&] {
+    return solve(lines, truth, prior, information, small_camera(), {.steps = 20, .robust = 0.0});
+  };
+  const Solution without = found();
+  LineDistance end = lines.front();
+  end.offset_px += 10.0;
+  end.sigma_px = 3.0;
+  end.end = true;
+  lines.push_back(end);
+  const Solution with_end = found();
+  EXPECT_GT(geometry::step_between(without.X_WC, with_end.X_WC).norm(), 1e-4);
+  EXPECT_LT(with_end.rms_px, without.rms_px + 0.2) << "ten pixels off";
+  lines.back().end = false;
+  EXPECT_GT(found().rms_px, without.rms_px + 1.0);
+}
+
 TEST(Solve, AFewWrongLinesDoNotPullARobustPose) {
   RandomNumbers random(4);
   const Pose truth = some_pose(random);
