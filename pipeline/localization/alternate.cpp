@@ -25,6 +25,7 @@ constexpr double kMapSigmaOfSize = 0.001;
 constexpr float kShortOfCorner_px = 1.5F;
 constexpr double kCornerSigma_px = 3.0;
 constexpr float kCornerReach_px = 6.0F;
+constexpr int kMostCorners = 64;  // of the most confident matches: more of them hardly hold it better
 
 constexpr double kCloseBy = 0.2;    // of a map's size: no further off it is the camera's surroundings
 constexpr float kBeside_px = 2.0F;  // of a line, what lies on either side of it
@@ -96,6 +97,7 @@ geometry::Matrix6d Alternation::motion_metric(const geometry::Pose& X_WC) const 
 
 void Alternation::gather(std::span<const Match> matches, const SegmentTable& perceived) {
   lines_.clear();
+  corners_ = 0;
   const bool paper = parameters_.method == Method::kPaper;
   const double system = parameters_.system_sigma_px * parameters_.system_sigma_px;
   for (const Match& match : matches) {
@@ -133,7 +135,8 @@ void Alternation::gather_ends(const ProjectedPiece& piece, const PerceivedEdge& 
     const Eigen::Vector2f outward = side * along * edge.direction;
     const Eigen::Vector2f seen = edge.middle + (edge.half_length + kShortOfCorner_px) * outward;
     const Eigen::Vector2f expected = piece.middle + side * piece.half_length * piece.direction;
-    if (std::abs((seen - expected).dot(outward)) > kCornerReach_px) continue;
+    if (std::abs((seen - expected).dot(outward)) > kCornerReach_px || corners_ == kMostCorners) continue;
+    ++corners_;
     end.p_W = view_.point_at(piece, side * piece.half_length);
     end.normal = outward.cast<double>();
     end.offset_px = end.normal.dot(seen.cast<double>());

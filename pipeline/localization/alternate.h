@@ -96,6 +96,7 @@ class Alternation {
   Matcher matcher_;
   std::vector<render::VisiblePiece> visible_;
   std::vector<LineDistance> lines_;
+  int corners_ = 0;  ///< among them.
   int looks_ = 0;
 };
 
