@@ -15,13 +15,6 @@ namespace {
 using ::testing::HasSubstr;
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-/// Writes `to` for the first `from`.
-void replace(std::string& text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-}
-
 class LampRun : public ::testing::Test {
  protected:
   /// The lamp robot stands where the living lamp shows on its probes, and may turn from half a second on.

@@ -59,4 +59,7 @@ std::string make_images(const std::filesystem::path& folder, int count);
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
 
+/// Writes `to` for the first `from`; without one the test has failed.
+void replace(std::string& text, const std::string& from, const std::string& to);
+
 }  // namespace cgsr::app::testing

@@ -18,12 +18,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-void replace(std::string& text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  ASSERT_NE(at, std::string::npos) << from;
-  text.replace(at, from.size(), to);
-}
-
 class RunSimulated : public ::testing::Test {
  protected:
   /// The shipped robot with images of half the size.
