@@ -30,6 +30,23 @@ TEST(Gate, LetsThroughWhatIsSure) {
   EXPECT_EQ(judged(good()), Reason::kNone);
 }
 
+TEST(Gate, AsksForMoreEvidenceTheWiderASearchedPoseIs) {
+  const auto known_to = [](double sigma_m, float agreement) {
+    Estimate estimate = good();
+    estimate.agreement_on_map = agreement;
+    estimate.solution.information(0, 0) = 1.0 / (sigma_m * sigma_m);
+    return estimate;
+  };
+  const Standing just_ahead{0.06F, 2.0};
+  EXPECT_EQ(judged(known_to(0.02, 0.5F), just_ahead), Reason::kNone);
+  EXPECT_EQ(judged(known_to(0.06, 0.5F), just_ahead), Reason::kUncertain);
+  EXPECT_EQ(judged(known_to(0.06, 0.8F), just_ahead), Reason::kNone);
+  EXPECT_EQ(judged(known_to(0.15, 0.8F), just_ahead), Reason::kUncertain) << "whatever speaks for it";
+  Standing few_starts = just_ahead;
+  few_starts.narrow = true;
+  EXPECT_EQ(judged(known_to(0.06, 0.5F), few_starts), Reason::kNone) << "the prior was right before";
+}
+
 TEST(Gate, NamesWhatIsMissing) {
   Estimate estimate = good();
   estimate.expected = 1;
