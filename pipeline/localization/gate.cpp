@@ -15,11 +15,12 @@ constexpr float kMostLead = 0.3F;  // ahead of a pose that has next to nothing: 
 constexpr float kChance = 0.2F;
 constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the farther off, the more must speak for it
 constexpr float kChoiceCounts =
-    0.04F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
+    0.08F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
 // A wrong map has a pose that fits a few of its edges, and leaves open what they do: with the least evidence a searched pose must be this
-// much surer than sigma_most_m, with this much more evidence no longer.
-constexpr double kSureShare = 0.3;
-constexpr double kSurePerEvidence = 2.5;
+// much surer than sigma_most_m; the more speaks for it, the less.
+constexpr double kSureShare = 0.4;
+constexpr double kSurePerEvidence = 4.0;
+constexpr double kSureMost = 1.2;
 constexpr double kSame_m = 0.05;
 constexpr double kSame_rad = 1.5 * std::numbers::pi / 180.0;
 constexpr int kLeastExpected = 3;
@@ -73,7 +74,7 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
   double place_most_m = parameters.sigma_most_m;
   if (!standing->narrow) {
     const double more = static_cast<double>(evidence_of(estimate, *standing)) - parameters.evidence_least;
-    place_most_m *= std::min(1.0, kSureShare + kSurePerEvidence * more);
+    place_most_m *= std::min(kSureMost, kSureShare + kSurePerEvidence * more);
   }
   const double turn_most = parameters.sigma_most_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= place_most_m) ||

@@ -17,6 +17,30 @@ TEST(TrueEdges, AreAllOfTheMaps) {
   EXPECT_EQ(TrueEdges((*place)->scene()).size(), static_cast<std::size_t>(sim::count_map((*place)->scene()).edges));
 }
 
+// Of a box that stands on a longer one, flush with it at the front and the back, two edges are part of the longer one's.
+TEST(TrueEdges, CountALineOnce) {
+  const auto with_boxes = [](int count) {
+    return Place::make("occlusion", [count](sim::WorldSpec& spec) {
+      sim::ShapeSpec box;
+      box.kind = sim::ShapeKind::kBox;
+      box.material = spec.material.front().name;
+      for (int i = 0; i < count; ++i) {
+        box.name = i == 0 ? "below" : "above";
+        box.position_m = {3.0, 0.0, i == 0 ? 0.8 : 1.0};
+        box.size_m = {i == 0 ? 0.5 : 0.3, 0.3, 0.2};
+        spec.shape.push_back(box);
+      }
+    });
+  };
+  const auto none = with_boxes(0);
+  const auto one = with_boxes(1);
+  const auto two = with_boxes(2);
+  ASSERT_TRUE(none && one && two);
+  const std::size_t others = TrueEdges((*none)->scene()).size();
+  EXPECT_EQ(TrueEdges((*one)->scene()).size(), others + 12);
+  EXPECT_EQ(TrueEdges((*two)->scene()).size(), others + 12 + 10);
+}
+
 TEST(TrueEdges, ClothHidesSome) {
   const auto with = Place::make("occlusion");
   const auto without = Place::make("occlusion", [](sim::WorldSpec& spec) {

@@ -38,13 +38,13 @@ TEST(Gate, AsksForMoreEvidenceTheWiderASearchedPoseIs) {
     return estimate;
   };
   const Standing just_ahead{0.06F, 2.0};
-  EXPECT_EQ(judged(known_to(0.02, 0.5F), just_ahead), Reason::kNone);
-  EXPECT_EQ(judged(known_to(0.06, 0.5F), just_ahead), Reason::kUncertain);
+  EXPECT_EQ(judged(known_to(0.02, 0.45F), just_ahead), Reason::kNone);
+  EXPECT_EQ(judged(known_to(0.06, 0.45F), just_ahead), Reason::kUncertain);
   EXPECT_EQ(judged(known_to(0.06, 0.8F), just_ahead), Reason::kNone);
   EXPECT_EQ(judged(known_to(0.15, 0.8F), just_ahead), Reason::kUncertain) << "whatever speaks for it";
   Standing few_starts = just_ahead;
   few_starts.narrow = true;
-  EXPECT_EQ(judged(known_to(0.06, 0.5F), few_starts), Reason::kNone) << "the prior was right before";
+  EXPECT_EQ(judged(known_to(0.06, 0.45F), few_starts), Reason::kNone) << "the prior was right before";
 }
 
 TEST(Gate, NamesWhatIsMissing) {
@@ -70,7 +70,7 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.prior_chi2 = 30.0F;
   EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
   estimate = good();
-  estimate.agreement_on_map = 0.5F;
+  estimate.agreement_on_map = 0.45F;
   EXPECT_EQ(judged(estimate, Standing{0.001F, 2.0}), Reason::kAmbiguous);
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
@@ -82,8 +82,8 @@ TEST(Gate, AsksForMoreWhereThereIsMoreToChooseFrom) {
   Estimate estimate = good();
   estimate.agreement_on_map = 0.5F;
   EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kNone);
-  EXPECT_EQ(judged(estimate, Standing{0.1F, 200.0}), Reason::kAmbiguous);
-  estimate.prior_chi2 = 12.0F;
+  EXPECT_EQ(judged(estimate, Standing{0.1F, 20.0}), Reason::kAmbiguous);
+  estimate.prior_chi2 = 16.0F;
   EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kAmbiguous);
 }
 

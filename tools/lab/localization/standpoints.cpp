@@ -23,6 +23,7 @@ constexpr float kOffSurface_m = 0.004F;
 constexpr double kNear_m = 0.05;
 constexpr double kStep_px = 2.0;
 constexpr int kDraws = 2000;
+constexpr double kSameLine_m = 1e-3;
 
 using Key = std::array<std::int64_t, 3>;
 
@@ -41,6 +42,28 @@ struct Candidate {
   int material = 0;
   bool seam = false;
 };
+
+double distance_to(const std::array<Vector3f, 2>& edge, const Vector3f& p) {
+  const Vector3f along = edge[1] - edge[0];
+  const float t = std::clamp((p - edge[0]).dot(along) / along.squaredNorm(), 0.0F, 1.0F);
+  return static_cast<double>((edge[0] + t * along - p).norm());
+}
+
+/// Where a wall stands on a floor both end: that is one edge. Of those that lie on one line only what is not part of a longer one is kept.
+std::vector<std::array<Vector3f, 2>> each_once(const std::vector<std::array<Vector3f, 2>>& edges) {
+  const auto length = [](const std::array<Vector3f, 2>& edge) { return (edge[1] - edge[0]).norm(); };
+  std::vector<std::array<Vector3f, 2>> longest_first = edges;
+  std::stable_sort(longest_first.begin(), longest_first.end(),
+                   [&](const auto& a, const auto& b) { return length(a) > length(b); });
+  std::vector<std::array<Vector3f, 2>> kept;
+  for (const auto& edge : longest_first) {
+    const bool part = std::any_of(kept.begin(), kept.end(), [&](const auto& longer) {
+      return distance_to(longer, edge[0]) < kSameLine_m && distance_to(longer, edge[1]) < kSameLine_m;
+    });
+    if (!part) kept.push_back(edge);
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -67,6 +90,7 @@ TrueEdges::TrueEdges(const sim::Scene& scene) {
   for (const auto& [keys, candidate] : found) {
     if (!candidate.seam) edges_.push_back(candidate.ends);
   }
+  edges_ = each_once(edges_);
 }
 
 int TrueEdges::seen(Place& place, const geometry::Pose& X_WC, double least_px) const {
