@@ -31,8 +31,11 @@ void add_localize_command(CLI::App& app, int& exit_code);
 void add_shade_command(CLI::App& app, int& exit_code);
 void add_sim_command(CLI::App& app, int& exit_code);
 
-/// Adds `probes` to `calibrate`.
+// What `calibrate` is made of.
+void add_calibrate_camera(CLI::App& calibrate, int& exit_code);
+void add_calibrate_mount(CLI::App& calibrate, int& exit_code);
 void add_calibrate_probes(CLI::App& calibrate, int& exit_code);
+void add_calibrate_odometry(CLI::App& calibrate, int& exit_code);
 
 /// Prints `error: …` to standard error. \return kFailure.
 int report(const Error& error);

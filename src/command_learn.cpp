@@ -5,7 +5,6 @@
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/color/model_file.h"
 #include "platform/config/canonical.h"
@@ -13,6 +12,7 @@
 #include "src/config/load.h"
 #include "src/input/image_input.h"
 #include "src/output/learn_preview.h"
+#include "src/output/picture.h"
 
 namespace cgsr::app {
 namespace {
@@ -65,8 +65,8 @@ int run_learn(const LearnOptions& options) {
   if (const auto saved = color::save_model(learned->model, options.output); !saved) return report(saved.error());
 
   const std::string preview = options.preview.empty() ? options.output + ".png" : options.preview;
-  if (!cv::imwrite(preview, draw_preview(views->samples, *learned))) {
-    return report(Error{fmt::format("{}: the preview cannot be written", preview)});
+  if (const auto written = write_picture(preview, draw_preview(views->samples, *learned)); !written) {
+    return report(written.error());
   }
   fmt::print("{}\nmodel    {}\npreview  {}\nconfiguration {}\n", learned->words, options.output, preview,
              config::hash(*config));

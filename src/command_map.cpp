@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/world/compact.h"
@@ -19,6 +19,7 @@
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
 #include "src/output/map_view.h"
+#include "src/output/picture.h"
 
 namespace cgsr::app {
 namespace {
@@ -150,12 +151,9 @@ int run_picture(const Options& options) {
   if (options.image.empty()) {
     picture = draw_surfaces(*map, world::Index(*map), *X_WC, *camera);
   } else {
-    picture = cv::imread(options.image, cv::IMREAD_COLOR);
-    if (picture.empty()) return report(Error{fmt::format("{}: no image that can be read", options.image)});
-    if (picture.cols != camera->width_px || picture.rows != camera->height_px) {
-      return report(Error{fmt::format("{}: {}x{} px, but {} is of a camera of {}x{}", options.image, picture.cols,
-                                      picture.rows, options.camera, camera->width_px, camera->height_px)});
-    }
+    auto image = read_picture(options.image, *camera, options.camera);
+    if (!image) return report(image.error());
+    picture = std::move(*image);
   }
   render::RasterParameters parameters;
   parameters.width = 640;
@@ -166,12 +164,7 @@ int run_picture(const Options& options) {
   pieces.reserve(map->edges.size() + 10'000);
   raster.look(*X_WC, *camera, pieces);
   draw_pieces(*map, pieces, *camera, picture);
-  bool written = false;
-  try {
-    written = cv::imwrite(options.output, picture);
-  } catch (const cv::Exception&) {  // an ending that it does not know
-  }
-  if (!written) return report(Error{fmt::format("{}: cannot be written as an image", options.output)});
+  if (const auto written = write_picture(options.output, picture); !written) return report(written.error());
   fmt::print("{}: {} visible pieces of {} edges\n", options.output, pieces.size(), map->edges.size());
   return kSuccess;
 }

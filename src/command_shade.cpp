@@ -3,11 +3,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/render/shadow_volumes.h"
 #include "pipeline/world/index.h"
@@ -16,6 +16,7 @@
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
 #include "src/output/map_view.h"
+#include "src/output/picture.h"
 
 namespace cgsr::app {
 namespace {
@@ -64,22 +65,14 @@ int run_shade(const Options& options) {
   if (options.image.empty()) {
     picture = draw_surfaces(*map, world::Index(*map), *X_WC, *camera);
   } else {
-    picture = cv::imread(options.image, cv::IMREAD_COLOR);
-    if (picture.empty()) return report(Error{fmt::format("{}: no image that can be read", options.image)});
-    if (picture.cols != camera->width_px || picture.rows != camera->height_px) {
-      return report(Error{fmt::format("{}: {}x{} px, but {} is of a camera of {}x{}", options.image, picture.cols,
-                                      picture.rows, options.camera, camera->width_px, camera->height_px)});
-    }
+    auto image = read_picture(options.image, *camera, options.camera);
+    if (!image) return report(image.error());
+    picture = std::move(*image);
   }
   render::ShadowVolumes volumes(*map, options.shade);
   const render::ShadeMasks& masks = volumes.look(*X_WC, *camera, p_WL, options.widen);
   draw_masks(masks, picture);
-  bool written = false;
-  try {
-    written = cv::imwrite(options.output, picture);
-  } catch (const cv::Exception&) {  // an ending that it does not know
-  }
-  if (!written) return report(Error{fmt::format("{}: cannot be written as an image", options.output)});
+  if (const auto written = write_picture(options.output, picture); !written) return report(written.error());
   fmt::print("{}: {:.1f} % of the surfaces seen lie in shade, {:.1f} % of the image may; {} silhouette edges\n",
              options.output, share(masks.surface_shaded), share(masks.possibly_shaded), volumes.silhouettes());
   return kSuccess;

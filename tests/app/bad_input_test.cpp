@@ -170,6 +170,9 @@ TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {
   expect_refused(outcome, "no/such/folder/t.csv");
   expect_refused(run_cgsr({"track", "--input", images(), "--learn", region_, "--video", scratch_ / "no/such/t.avi"}),
                  "no/such/t.avi");
+  expect_refused(run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "m", "--preview",
+                           scratch_ / "p.what"}),
+                 "p.what: cannot be written as an image");
   expect_refused(run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "no/such/m"}),
                  "no/such/m");
 }
