@@ -144,14 +144,14 @@ void Alternation::gather_ends(const ProjectedPiece& piece, const PerceivedEdge& 
   }
 }
 
-// Of all that was perceived, each by its weight; from outside of the map what lies on it, as it was looked at last, or borders on it.
+// Of all that was perceived, each by how much it tells; from outside of the map what lies on it, as it was looked at last, or borders on it.
 float Alternation::length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const {
-  if (bounds_.contains(X_WC.translation())) return perceived.whole_length();
+  if (bounds_.contains(X_WC.translation())) return perceived.telling_length();
   float length = 0.0F;
   for (const PerceivedEdge& edge : perceived.edges()) {
     const Eigen::Vector2f aside = kBeside_px * edge.normal();
     if (expectation_->covers(edge.middle + aside) || expectation_->covers(edge.middle - aside)) {
-      length += 2.0F * edge.half_length * edge.weight;
+      length += 2.0F * edge.half_length * edge.telling;
     }
   }
   return length;
@@ -163,17 +163,20 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
   for (const ProjectedPiece& piece : view_.projected()) expected += 2.0F * piece.half_length * piece.weight;
   float found = 0.0F;
   float foreseen = 0.0F;
+  float foretold = 0.0F;
   for (const Match& match : matches) {
     const float scaled = match.effective_distance_px() / kNear_px;
     const float length = match.overlap_px() / (1.0F + scaled * scaled);
     found += length * view_.projected()[match.projected].weight;
-    foreseen += length * perceived.edges()[match.perceived].weight;
+    const PerceivedEdge& edge = perceived.edges()[match.perceived];
+    foreseen += length * edge.weight;
+    foretold += length * edge.telling;
   }
   const float both = expected + perceived.whole_length();
   estimate.explained = expected > 0.0F ? std::min(1.0F, found / expected) : 0.0F;
   estimate.agreement = both > 0.0F ? std::min(1.0F, (found + foreseen) / both) : 0.0F;
   const float on_map = expected + length_on_map(perceived, X_WC);
-  estimate.agreement_on_map = on_map > 0.0F ? std::min(1.0F, (found + foreseen) / on_map) : 0.0F;
+  estimate.agreement_on_map = on_map > 0.0F ? std::min(1.0F, (found + foretold) / on_map) : 0.0F;
 }
 
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,

@@ -36,8 +36,8 @@ struct Estimate {
   /// How much of what is expected was perceived and of what was perceived is expected, 0..1: a pose that expects next to nothing is not right
   /// because it finds that, nor one that expects an edge everywhere.
   float agreement = 0.0F;
-  /// The same; but seen from outside of the map, which is then a thing and not the surroundings, only what was perceived on it counts: what stands
-  /// about it says nothing.
+  /// What a gate may believe of it: each perceived edge counts by how much it tells; and seen from outside of the map, which is then a thing and
+  /// not the surroundings, only what was perceived on it: what stands about it says nothing.
   float agreement_on_map = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;

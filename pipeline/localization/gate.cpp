@@ -18,8 +18,8 @@ constexpr float kChoiceCounts =
     0.08F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
 // A wrong map has a pose that fits a few of its edges, and leaves open what they do: with the least evidence a searched pose must be this
 // much surer than sigma_most_m; the more speaks for it, the less.
-constexpr double kSureShare = 0.4;
-constexpr double kSurePerEvidence = 4.0;
+constexpr double kSureShare = 0.3;
+constexpr double kSurePerEvidence = 2.5;
 constexpr double kSureMost = 1.2;
 constexpr double kSame_m = 0.05;
 constexpr double kSame_rad = 1.5 * std::numbers::pi / 180.0;

@@ -141,5 +141,26 @@ TEST_F(Matching, IsWithinItsCapacity) {
   EXPECT_LE(match(pieces, edges).size(), 200U);
 }
 
+// A sheet's print beside the sheet's border: as long together, and next to nothing against it.
+TEST(ASegmentTable, HearsLittleOfManyShortEdges) {
+  SegmentTable border(100);
+  SegmentTable print(100);
+  PerceivedEdge long_one = perceived(10.0F, 10.0F, 130.0F, 10.0F);
+  long_one.contrast = 100.0F;
+  border.add(long_one);
+  for (int i = 0; i < 12; ++i) {
+    const float y = 20.0F + 5.0F * static_cast<float>(i);
+    PerceivedEdge letter = perceived(20.0F, y, 30.0F, y);
+    letter.contrast = 100.0F;
+    print.add(letter);
+  }
+  border.finish();
+  print.finish();
+  EXPECT_FLOAT_EQ(border.telling_length(), 120.0F);
+  EXPECT_FLOAT_EQ(print.whole_length(), 120.0F) << "the solution and the search take them as they are";
+  EXPECT_LT(print.telling_length(), 0.2F * border.telling_length());
+  EXPECT_GT(print.telling_length(), 0.0F);
+}
+
 }  // namespace
 }  // namespace cgsr::localization
