@@ -44,6 +44,7 @@ void PoseTally::follow_odometry(const hal::FloorPose& robot, const hal::Odometry
   if (last_) figures_.way_m += std::hypot(robot.x_m - last_->x_m, robot.y_m - last_->y_m);
   last_ = robot;
   figures_.odometry_ends_off_m = (*X_WO_ * X_OR.translation() - X_WR.translation()).norm();
+  figures_.odometry_worst_m = std::max(figures_.odometry_worst_m, figures_.odometry_ends_off_m);
 }
 
 }  // namespace cgsr::robot

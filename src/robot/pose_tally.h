@@ -22,6 +22,7 @@ struct PoseFigures {
 
   /// What odometry alone would have come to, from the pose of the first correction on: the robot's distance from where it is.
   double odometry_ends_off_m = 0.0;
+  double odometry_worst_m = 0.0;  ///< likewise, the farthest on the way.
 };
 
 /// How far an image's pose was from the camera's true one.

@@ -85,18 +85,18 @@ Json pose_json(const PoseFigures& pose) {
           {"mean_deg", kDegrees * pose.mean_rad},
           {"worst_deg", kDegrees * pose.worst_rad},
           {"way_m", pose.way_m},
-          {"odometry_ends_off_cm", 100.0 * pose.odometry_ends_off_m}};
+          {"odometry_ends_off_cm", 100.0 * pose.odometry_ends_off_m},
+          {"odometry_worst_cm", 100.0 * pose.odometry_worst_m}};
 }
 
 std::string pose_text(const PoseFigures& pose) {
   return fmt::format(
       "pose by truth, from the first correction on: {} images, corrected in {:.1f} %, lost {} times; off by {:.1f} cm "
-      "and "
-      "{:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg at worst\n{:.1f} m driven; odometry alone would "
-      "have "
-      "ended {:.0f} cm off\n\n",
+      "and {:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg at worst\n"
+      "{:.1f} m driven; odometry alone would have been {:.0f} cm off at worst, {:.0f} cm at the end\n\n",
       pose.images, 100.0 * share(pose.corrected, pose.images), pose.lost, 100.0 * pose.mean_m, kDegrees * pose.mean_rad,
-      100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_ends_off_m);
+      100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_worst_m,
+      100.0 * pose.odometry_ends_off_m);
 }
 
 Json seek_json(const std::vector<SeekStep>& steps) {

@@ -38,6 +38,10 @@ TEST(PoseTally, MeasuresFromTheFirstCorrectionOn) {
   EXPECT_NEAR(tally.figures().worst_rad, 0.1, 1e-9);
   EXPECT_NEAR(tally.figures().way_m, 1.0, 1e-12);
   EXPECT_NEAR(tally.figures().odometry_ends_off_m, 0.1, 1e-12);
+  odometry.x_m = 1.02;
+  tally.add(truth, corrected_at(geometry::pose_on_floor(1.0, 0.0, 0.0)), odometry);
+  EXPECT_NEAR(tally.figures().odometry_ends_off_m, 0.02, 1e-12);
+  EXPECT_NEAR(tally.figures().odometry_worst_m, 0.1, 1e-12);
 }
 
 hal::Odometry report(double time_s, double x_m, double heading_rad) {
