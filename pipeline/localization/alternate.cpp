@@ -13,6 +13,7 @@ constexpr float kShrink = 0.6F;            // of the matching radius with each r
 constexpr float kWholeOverlap_px = 20.0F;  // a shorter overlap weighs less
 constexpr float kLeastShare = 0.3F;
 constexpr float kNear_px = 2.0F;  // a match this far off explains half of its length
+constexpr float kWorstShare = 0.15F;
 constexpr std::size_t kMetricPieces = 48;
 constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
@@ -30,6 +31,12 @@ constexpr int kMostCorners = 64;  // of the most confident matches: more of them
 constexpr double kCloseBy = 0.2;    // of a map's size: no further off it is the camera's surroundings
 constexpr float kBeside_px = 2.0F;  // of a line, what lies on either side of it
 
+// How much of a match's length counts as explained, 0..1.
+float nearness(const Match& match) {
+  const float scaled = match.effective_distance_px() / kNear_px;
+  return 1.0F / (1.0F + scaled * scaled);
+}
+
 }  // namespace
 
 Belief::Belief(const Prior& given) : prior(given), information(geometry::Matrix6d::Zero()) {
@@ -46,7 +53,8 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
       expectation_(&expectation),
       camera_(camera),
       view_(map, static_cast<std::size_t>(parameters.pieces_most)),
-      matcher_(static_cast<std::size_t>(parameters.pieces_most), most_perceived) {
+      matcher_(static_cast<std::size_t>(parameters.pieces_most), most_perceived),
+      by_part_(camera.width_px, camera.height_px) {
   visible_.reserve(static_cast<std::size_t>(parameters.pieces_most));
   lines_.reserve(static_cast<std::size_t>(parameters.pieces_most) * 4);
   for (const Eigen::Vector3f& vertex : map.vertices) bounds_.extend(vertex.cast<double>());
@@ -59,8 +67,22 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
 
 void Alternation::look(const geometry::Pose& X_WC) {
   expectation_->look(X_WC, camera_, visible_);
-  view_.take(visible_);
+  view_.take(visible_, X_WC);
+  X_WC_looked_ = X_WC;
   ++looks_;
+}
+
+bool Alternation::is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& metric) const {
+  if (!X_WC_looked_) return true;
+  const geometry::Vector6d since = geometry::step_between(*X_WC_looked_, X_WC);
+  return std::sqrt(since.dot(metric * since)) > parameters_.look_again_px;
+}
+
+void Alternation::look_if_far(const geometry::Pose& X_WC) {
+  view_.project(X_WC, camera_);
+  if (!is_far(X_WC, motion_metric(X_WC))) return;
+  look(X_WC);
+  view_.project(X_WC, camera_);
 }
 
 geometry::Matrix6d Alternation::motion_metric(const geometry::Pose& X_WC) const {
@@ -144,15 +166,18 @@ void Alternation::gather_ends(const ProjectedPiece& piece, const PerceivedEdge& 
   }
 }
 
-// Of all that was perceived, each by how much it tells; from outside of the map what lies on it, as it was looked at last, or borders on it.
+// It lies on the map as that was looked at last, or borders on it.
+bool Alternation::on_map(const PerceivedEdge& edge) const {
+  const Eigen::Vector2f aside = kBeside_px * edge.normal();
+  return expectation_->covers(edge.middle + aside) || expectation_->covers(edge.middle - aside);
+}
+
+// Of all that was perceived, each by how much it tells; from outside of the map what lies on it.
 float Alternation::length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const {
   if (bounds_.contains(X_WC.translation())) return perceived.telling_length();
   float length = 0.0F;
   for (const PerceivedEdge& edge : perceived.edges()) {
-    const Eigen::Vector2f aside = kBeside_px * edge.normal();
-    if (expectation_->covers(edge.middle + aside) || expectation_->covers(edge.middle - aside)) {
-      length += 2.0F * edge.half_length * edge.telling;
-    }
+    if (on_map(edge)) length += 2.0F * edge.half_length * edge.telling;
   }
   return length;
 }
@@ -165,8 +190,7 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
   float foreseen = 0.0F;
   float foretold = 0.0F;
   for (const Match& match : matches) {
-    const float scaled = match.effective_distance_px() / kNear_px;
-    const float length = match.overlap_px() / (1.0F + scaled * scaled);
+    const float length = nearness(match) * match.overlap_px();
     found += length * view_.projected()[match.projected].weight;
     const PerceivedEdge& edge = perceived.edges()[match.perceived];
     foreseen += length * edge.weight;
@@ -177,6 +201,28 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
   estimate.agreement = both > 0.0F ? std::min(1.0F, (found + foreseen) / both) : 0.0F;
   const float on_map = expected + length_on_map(perceived, X_WC);
   estimate.agreement_on_map = on_map > 0.0F ? std::min(1.0F, (found + foretold) / on_map) : 0.0F;
+}
+
+void Alternation::judge_by_part(std::span<const Match> matches, const SegmentTable& perceived,
+                                const geometry::Pose& X_WC, Estimate& estimate) {
+  by_part_.clear();
+  for (const ProjectedPiece& piece : view_.projected()) {
+    const Eigen::Vector2f half = piece.half_length * piece.direction;
+    by_part_.add(piece.middle - half, piece.middle + half, piece.weight);
+  }
+  const bool surrounded = bounds_.contains(X_WC.translation());
+  for (const PerceivedEdge& edge : perceived.edges()) {
+    if (!surrounded && !on_map(edge)) continue;
+    const Eigen::Vector2f half = edge.half_length * edge.direction;
+    by_part_.add(edge.middle - half, edge.middle + half, edge.telling);
+  }
+  for (const Match& match : matches) {
+    const ProjectedPiece& piece = view_.projected()[match.projected];
+    const float weight = nearness(match) * (piece.weight + perceived.edges()[match.perceived].telling);
+    by_part_.agree(piece.middle + match.from_px * piece.direction, piece.middle + match.to_px * piece.direction,
+                   weight);
+  }
+  estimate.agreement_in_the_worst = by_part_.in_the_worst(kWorstShare);
 }
 
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
@@ -192,15 +238,11 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
   solver.steps = 2;
   solver.robust = options.robust;
   geometry::Pose X_WC = start;
-  geometry::Pose looked_from = start;
   bool look_now = options.look_first;
   geometry::Matrix6d metric = geometry::Matrix6d::Zero();
   for (int round = 0; round < options.rounds; ++round) {
     if (!budget.grant()) break;
-    if (look_now) {
-      look(X_WC);
-      looked_from = X_WC;
-    }
+    if (look_now) look(X_WC);
     view_.project(X_WC, camera_);
     if (round == 0) metric = motion_metric(X_WC);
     const auto matches = matcher_.match(view_.projected(), perceived, rules);
@@ -218,6 +260,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     estimate.expected = static_cast<int>(view_.projected().size());
     estimate.matches = static_cast<int>(matches.size());
     judge(matches, perceived, X_WC, estimate);
+    if (options.by_part) judge_by_part(matches, perceived, X_WC, estimate);
     if (!solution.solved) break;
     estimate.solved = true;
     estimate.solution = solution;
@@ -225,8 +268,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     const double moved = std::sqrt(step.dot(metric * step));
     X_WC = solution.X_WC;
     if (moved < parameters_.settled_px && rules.radius_px <= least) break;
-    const geometry::Vector6d since = geometry::step_between(looked_from, X_WC);
-    look_now = options.look_again && std::sqrt(since.dot(metric * since)) > parameters_.look_again_px;
+    look_now = options.look_again && is_far(X_WC, metric);
     if (!options.whole_matching) rules.radius_px = std::max(least, rules.radius_px * kShrink);
   }
   const geometry::Vector6d off = geometry::step_between(belief.prior.X_WC, estimate.solution.X_WC);

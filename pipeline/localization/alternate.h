@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "pipeline/localization/agreement_by_part.h"
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/matching.h"
@@ -39,6 +41,8 @@ struct Estimate {
   /// What a gate may believe of it: each perceived edge counts by how much it tells; and seen from outside of the map, which is then a thing and
   /// not the surroundings, only what was perceived on it: what stands about it says nothing.
   float agreement_on_map = 0.0F;
+  /// Likewise, in the parts of the image where they agree least; with AlternateOptions::by_part.
+  float agreement_in_the_worst = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;
 };
@@ -53,6 +57,7 @@ struct AlternateOptions {
   bool look_first = true;                  ///< false: the pieces of the last look are good enough.
   bool look_again = true;                  ///< when the pose moved far.
   bool whole_matching = false;             ///< radius stays (the paper's).
+  bool by_part = false;                    ///< for the gate: where in the image they agree.
   bool measured_noise =
       false;  ///< the pose out of the noise that the matches show; its covariance stays the stated one's.
 };
@@ -71,6 +76,8 @@ class Alternation {
 
   /// Draws the expectation from a pose; project() and view() go with it.
   void look(const geometry::Pose& X_WC);
+  /// Projects what is known to be visible, and looks anew where the pose is farther than look_again_px from where that was seen.
+  void look_if_far(const geometry::Pose& X_WC);
   void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }
   [[nodiscard]] const ExpectedView& view() const { return view_; }
 
@@ -83,9 +90,13 @@ class Alternation {
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
   void gather_ends(const ProjectedPiece& piece, const PerceivedEdge& edge, LineDistance end);
+  [[nodiscard]] bool is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& metric) const;
+  [[nodiscard]] bool on_map(const PerceivedEdge& edge) const;
   [[nodiscard]] float length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const;
   void judge(std::span<const Match> matches, const SegmentTable& perceived, const geometry::Pose& X_WC,
              Estimate& estimate) const;
+  void judge_by_part(std::span<const Match> matches, const SegmentTable& perceived, const geometry::Pose& X_WC,
+                     Estimate& estimate);
 
   LocalizerParameters parameters_;
   Eigen::AlignedBox3d bounds_;  ///< of the map and what is close by.
@@ -94,9 +105,11 @@ class Alternation {
   geometry::Camera camera_;
   ExpectedView view_;
   Matcher matcher_;
+  AgreementByPart by_part_;
   std::vector<render::VisiblePiece> visible_;
   std::vector<LineDistance> lines_;
-  int corners_ = 0;  ///< among them.
+  std::optional<geometry::Pose> X_WC_looked_;  ///< where the last look was from.
+  int corners_ = 0;                            ///< among them.
   int looks_ = 0;
 };
 

@@ -158,16 +158,23 @@ ExpectedView::ExpectedView(const world::Map& map, std::size_t most_pieces)
   projected_.reserve(most_);
 }
 
-void ExpectedView::take(std::span<const render::VisiblePiece> visible) {
+void ExpectedView::take(std::span<const render::VisiblePiece> visible, const geometry::Pose& X_WC) {
   pieces_.clear();
+  const Eigen::Vector3f forward = X_WC.linear().col(2).cast<float>();
+  const Eigen::Vector3f p_WC = X_WC.translation().cast<float>();
   for (const render::VisiblePiece& piece : visible) {
     if (pieces_.size() == most_) break;
     const world::Edge& edge = map_->edges[piece.edge];
     const Eigen::Vector3f& a = map_->vertices[edge.vertices[0]];
     const Eigen::Vector3f& b = map_->vertices[edge.vertices[1]];
-    const float whole_px = (piece.p1 - piece.p0).norm() / std::max(1e-6F, piece.to - piece.from);
-    const bool ends_at_p0 = piece.from * whole_px < kSeenToItsEnd_px;
-    const bool ends_at_p1 = (1.0F - piece.to) * whole_px < kSeenToItsEnd_px;
+    // A stretch from place s to t of the edge is (t - s) / (Z_s Z_t) long in the image, but for a factor that all of its stretches share.
+    const float seen_px = (piece.p1 - piece.p0).norm() / std::max(1e-6F, piece.to - piece.from);
+    const float depth_a = forward.dot(a - p_WC);
+    const float depth_b = forward.dot(b - p_WC);
+    const float depth_from = depth_a + piece.from * (depth_b - depth_a);
+    const float depth_to = depth_a + piece.to * (depth_b - depth_a);
+    const bool ends_at_p0 = depth_a > kNear_m && piece.from * seen_px * depth_to < kSeenToItsEnd_px * depth_a;
+    const bool ends_at_p1 = depth_b > kNear_m && (1.0F - piece.to) * seen_px * depth_from < kSeenToItsEnd_px * depth_b;
     pieces_.push_back({.edge = piece.edge,
                        .p0_W = a + (ends_at_p0 ? 0.0F : piece.from) * (b - a),
                        .p1_W = a + (ends_at_p1 ? 1.0F : piece.to) * (b - a),

@@ -54,8 +54,8 @@ class ExpectedView {
  public:
   ExpectedView(const world::Map& map, std::size_t most_pieces);
 
-  /// Takes over what is visible.
-  void take(std::span<const render::VisiblePiece> visible);
+  /// Takes over what is visible from a pose.
+  void take(std::span<const render::VisiblePiece> visible, const geometry::Pose& X_WC);
 
   /// Projects the pieces that were taken. What is behind the camera, outside of the image or too short is left out.
   void project(const geometry::Pose& X_WC, const geometry::Camera& camera);

@@ -13,6 +13,7 @@ namespace {
 constexpr float kMostLead = 0.3F;  // ahead of a pose that has next to nothing: more of it says no more
 // Agreement that some pose always has: where no rival was found it is the rival.
 constexpr float kChance = 0.2F;
+constexpr float kWorstCounts = 0.5F;   // of a room's pose that is right in one corner only the others tell
 constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the farther off, the more must speak for it
 constexpr float kChoiceCounts =
     0.08F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
@@ -52,7 +53,7 @@ bool same_answer(const geometry::Pose& a, const geometry::Pose& b) {
 float evidence_of(const Estimate& estimate, const Standing& standing) {
   const float agreement = estimate.agreement_on_map;
   const float lead = std::min({standing.lead, kMostLead, agreement - kChance});
-  return agreement + lead - kPriorCounts * estimate.prior_chi2 -
+  return agreement + kWorstCounts * estimate.agreement_in_the_worst + lead - kPriorCounts * estimate.prior_chi2 -
          kChoiceCounts * static_cast<float>(std::log(std::max(1.0, standing.cells)));
 }
 

@@ -66,7 +66,8 @@ struct Localizer::State {
         search(parameters, alternation, perception.camera()),
         rival(parameters, alternation) {}
 
-  Correction from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
+  /// \return nothing when the budget did not hold all the starts: without them nobody knows of a rival.
+  std::optional<Correction> from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
   [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
   /// \param standing  none: the pose was followed, not searched for.
   void judge(const Estimate& estimate, const std::optional<Standing>& standing, Correction& answer) const;
@@ -135,12 +136,14 @@ Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belie
   options.rounds = 1;
   options.radius_px = static_cast<float>(parameters.match_radius_least_px);
   options.measured_noise = true;
+  options.by_part = true;
   UnlimitedBudget whole;
   const Estimate better = alternation.refine(estimate.solution.X_WC, belief, perception.edges(), options, whole);
   return better.solved ? better : estimate;
 }
 
-Correction Localizer::State::from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget) {
+std::optional<Correction> Localizer::State::from_near_starts(const Belief& belief, const PriorShape& shape,
+                                                             WorkBudget& budget) {
   Correction answer;
   AlternateOptions options;
   options.rounds = parameters.iterations;
@@ -148,6 +151,7 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
                                                     parameters.match_radius_least_px, parameters.match_radius_px));
   options.look_first = false;  // drawn already, for the prior's width
   const bool narrow = shape.widest_px() <= kOneStart_px;
+  options.by_part = parameters.search && !narrow;
   if (narrow && parameters.method == Method::kGlCorrect) options.robust = kFollowedRobust;
   Estimate best = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
   if (best.rounds == 0) {
@@ -176,6 +180,7 @@ Correction Localizer::State::from_near_starts(const Belief& belief, const PriorS
     }
     found[start] =
         alternation.refine(geometry::moved(belief.prior.X_WC, step), belief, perception.edges(), options, budget);
+    if (found[start].rounds == 0) return std::nullopt;
     if (rank(found[start]) > rank(best)) best = found[start];
   }
   float lead = 1.0F;
@@ -212,11 +217,13 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
 
   if (!s.search.running()) {
     if (!budget.grant()) return refused(Reason::kNoBudget);
-    s.alternation.look(prior.X_WC);
-    s.alternation.project(prior.X_WC);
+    s.alternation.look_if_far(prior.X_WC);
     const PriorShape shape = PriorShape::of(prior.covariance, s.alternation.motion_metric(prior.X_WC));
-    if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px) {
-      answer = s.from_near_starts(belief, shape, budget);
+    std::optional<Correction> at_once;
+    if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px)
+      at_once = s.from_near_starts(belief, shape, budget);
+    if (at_once) {
+      answer = *at_once;
     } else {
       s.rival.forget();
       s.search.begin(belief);

@@ -38,7 +38,7 @@ struct LocalizerParameters {
   int walks = 4;
   int matches_least = 3;
   double explained_tracking = 0.3;
-  double evidence_least = 0.36;
+  double evidence_least = 0.48;
   double prior_chi2_most =
       22.0;  // chi square of six numbers exceeds it once in 800; the mount was told a little wrong besides
   double sigma_most_m = 0.1;
@@ -77,12 +77,15 @@ struct LocalizerParameters {
     visit.number("explained_tracking", self.explained_tracking, {0.0, 1.0}, "",
                  "gate where a narrow prior is followed: share of the expected length found; what hides much of the "
                  "map moves no pose");
-    visit.number(
-        "evidence_least", self.evidence_least, {-10.0, 2.0}, "",
-        "gate where several poses were tried: agreement of image and map, lead, less distance and width of the prior");
+    visit.number("evidence_least", self.evidence_least, {-10.0, 2.0}, "",
+                 "gate where several poses were tried: agreement of image and map, in the worst parts of the image "
+                 "too, and lead, less distance and "
+                 "width of the prior");
     visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
-    visit.number("sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m",
-                 "gate where several poses were tried: of the position's worst direction");
+    visit.number(
+        "sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m",
+        "gate where several poses were tried: of the position's worst direction; after a search times 0.3 to 1.2, "
+        "by how much speaks for the pose");
     visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "likewise of the worst axis of turning");
     visit.number("rms_most_px", self.rms_most_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
     visit.number("pieces_most", self.pieces_most, {16, 20000}, "",

@@ -160,7 +160,8 @@ const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, 
 void PoseTracker::was_not_corrected() {
   ++now_.images_since_correction;
   if (now_.state == TrackState::kRecovered) now_.state = TrackState::kTracking;
-  if (!shows_nothing(now_.correction.reason)) ++now_.failures;
+  const bool first_search = now_.state == TrackState::kUnsure && now_.failures == 0 && localizer_->searching();
+  if (!first_search && !shows_nothing(now_.correction.reason)) ++now_.failures;
   const bool outgrown = now_.state == TrackState::kTracking && has_outgrown();
   if (outgrown || now_.failures >= parameters_.lost_after) now_.state = TrackState::kLost;
   if (now_.state == TrackState::kLost && !says_nothing(now_.correction.reason)) widen();

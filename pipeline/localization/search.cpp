@@ -106,8 +106,7 @@ double Search::motion_between(const Pose& a, const Pose& b) const {
 
 void Search::begin(const Belief& belief) {
   sequence_ += start_count_;
-  alternation_->look(belief.prior.X_WC);
-  alternation_->project(belief.prior.X_WC);
+  alternation_->look_if_far(belief.prior.X_WC);
   metric_ = alternation_->motion_metric(belief.prior.X_WC);
   shape_ = PriorShape::of(belief.prior.covariance, metric_);
   cells_ = 1.0;
@@ -178,18 +177,26 @@ void Search::keep(const Estimate& estimate) {
   if (estimates_.size() > kKept) estimates_.pop_back();
 }
 
+// What the rest of an image's budget does not hold waits for the next image's; what a whole one does not hold is taken as far as it came.
+std::optional<Estimate> Search::refined(const Pose& start, const Belief& belief, const SegmentTable& perceived,
+                                        const AlternateOptions& options, WorkBudget& budget) {
+  WatchedBudget watched(budget);
+  Estimate estimate = alternation_->refine(start, belief, perceived, options, watched);
+  if (watched.refused() && (!budget_is_whole_ || estimate.rounds == 0)) return std::nullopt;
+  budget_is_whole_ = false;
+  return estimate;
+}
+
 bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   const AlternateOptions options{.rounds = parameters_.iterations,
                                  .radius_px = static_cast<float>(parameters_.match_radius_px)};
   while (next_finalist_ < finalists_.size()) {
     if (units <= 0) return false;
     units -= kFinalistUnits;
-    WatchedBudget watched(budget);
-    const Estimate estimate =
-        alternation_->refine(finalists_[next_finalist_].X_WC, belief, perceived, options, watched);
-    if (watched.refused()) return false;
+    const auto estimate = refined(finalists_[next_finalist_].X_WC, belief, perceived, options, budget);
+    if (!estimate) return false;
     ++next_finalist_;
-    keep(estimate);
+    keep(*estimate);
   }
   return true;
 }
@@ -213,13 +220,11 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
         const std::uint32_t number = static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
         step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
       }
-      WatchedBudget watched(budget);
-      const Estimate estimate =
-          alternation_->refine(geometry::moved(X_WC_walk_, step), belief, perceived, options, watched);
-      if (watched.refused()) return false;
+      const auto estimate = refined(geometry::moved(X_WC_walk_, step), belief, perceived, options, budget);
+      if (!estimate) return false;
       ++next_neighbour_;
       const float before = rank_of(estimates_.front());
-      keep(estimate);
+      keep(*estimate);
       if (rank_of(estimates_.front()) > before + 0.01F &&
           motion_between(estimates_.front().solution.X_WC, X_WC_walk_) > kDistinct_px)
         improved_ = true;
@@ -234,7 +239,8 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
 // On the image at hand: the last word between the best and those that come next.
 void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
   const AlternateOptions options{.rounds = parameters_.iterations,
-                                 .radius_px = static_cast<float>(2.0 * parameters_.match_radius_least_px)};
+                                 .radius_px = static_cast<float>(2.0 * parameters_.match_radius_least_px),
+                                 .by_part = true};
   UnlimitedBudget whole;
   best_ = Estimate{};
   lead_ = 1.0F;
@@ -258,6 +264,7 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
 
 bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
   int units = parameters_.starts_per_image > 0 ? parameters_.starts_per_image : 1 << 30;
+  budget_is_whole_ = stage_ != Stage::kStarts;
   if (stage_ == Stage::kStarts) {
     field_.build(perceived);
     if (!try_starts(belief, budget, units)) return false;

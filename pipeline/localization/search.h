@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pipeline/localization/alternate.h"
@@ -52,6 +53,8 @@ class Search {
     float score = 0.0F;
   };
 
+  std::optional<Estimate> refined(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
+                                  const AlternateOptions& options, WorkBudget& budget);
   bool try_starts(const Belief& belief, WorkBudget& budget, int& units);
   bool refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
   bool try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
@@ -80,6 +83,7 @@ class Search {
   float lead_ = 0.0F;
   Stage stage_ = Stage::kIdle;
   bool improved_ = false;
+  bool budget_is_whole_ = false;  ///< nothing of this image's was spent on the search yet.
 };
 
 }  // namespace cgsr::localization

@@ -24,7 +24,7 @@ std::vector<ProjectedPiece> projected(const world::Map& map, const geometry::Pos
   std::vector<render::VisiblePiece> pieces;
   pieces.reserve(1000);
   every.look(X_WC, small_camera(), pieces);
-  view.take(pieces);
+  view.take(pieces, X_WC);
   view.project(X_WC, small_camera());
   return {view.projected().begin(), view.projected().end()};
 }
@@ -120,7 +120,7 @@ TEST(Expected, AnEdgeEndsWhereItsLastPieceDoesAndNothingHidesOrCutsIt) {
     render::VisiblePiece piece = visible[0];
     piece.p1 = piece.p0 + to * (piece.p1 - piece.p0);
     piece.to = to;
-    view.take(std::vector{piece});
+    view.take(std::vector{piece}, whole_in_view);
     view.project(whole_in_view, small_camera());
     return view.projected()[0];
   };
@@ -140,6 +140,39 @@ TEST(Expected, AnEdgeEndsWhereItsLastPieceDoesAndNothingHidesOrCutsIt) {
     ++cut;
   }
   EXPECT_EQ(cut, 2);
+}
+
+// Of an edge that comes towards the camera, the near end has most of the pixels.
+TEST(Expected, WhatHidesTheNearEndOfAnEdgeIsMeasuredThere) {
+  MapBuilder b;
+  b.rectangle({0.5F, -0.2F, 0.4F}, {9.5F, 0, 0}, {0, 0, 0.2F}, b.grey(0.9F));
+  ExpectedView view(b.map, 100);
+  const geometry::Pose X_WC = in_small_room(0.0, 0.0, 0.0);
+  int along = 0;
+  for (std::uint32_t i = 0; i < b.map.edges.size(); ++i) {
+    const Eigen::Vector3d a = b.map.vertices[b.map.edges[i].vertices[0]].cast<double>();
+    const Eigen::Vector3d d = b.map.vertices[b.map.edges[i].vertices[1]].cast<double>() - a;
+    if (std::abs(d.x()) < 1.0) continue;
+    ++along;
+    const bool comes = d.x() < 0.0;
+    const auto pixel_at = [&](double place) {
+      return Eigen::Vector2f(small_camera().pixel_of(X_WC.inverse() * (a + place * d)).value().cast<float>());
+    };
+    const auto ends_near = [&](double hidden) {
+      const double from = comes ? 0.0 : hidden;
+      const double to = comes ? 1.0 - hidden : 1.0;
+      view.take(std::vector<render::VisiblePiece>{{i, static_cast<float>(from), static_cast<float>(to), pixel_at(from),
+                                                   pixel_at(to)}},
+                X_WC);
+      return comes ? view.pieces()[0].ends_at_p1 : view.pieces()[0].ends_at_p0;
+    };
+    const double near = comes ? 1.0 : 0.0;
+    const double hidden = 0.015;
+    ASSERT_GT((pixel_at(near) - pixel_at(comes ? 1.0 - hidden : hidden)).norm(), 10.0F);
+    EXPECT_FALSE(ends_near(hidden));
+    EXPECT_TRUE(ends_near(0.0005));
+  }
+  EXPECT_EQ(along, 2);
 }
 
 TEST(Expected, WhatIsBehindOrOutsideIsLeftOut) {

@@ -15,6 +15,7 @@ Estimate good() {
   estimate.matches = 15;
   estimate.explained = 0.8F;
   estimate.agreement_on_map = 0.7F;
+  estimate.agreement_in_the_worst = 0.24F;
   estimate.prior_chi2 = 4.0F;
   estimate.solution.rms_px = 0.5;
   estimate.solution.information = geometry::Matrix6d::Identity() * 1e6;
@@ -75,6 +76,15 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
+}
+
+// A floor's tape that fits, and all that stands on it does not.
+TEST(Gate, AsksWhetherImageAndMapAgreeEverywhere) {
+  Estimate estimate = good();
+  estimate.agreement_on_map = 0.45F;
+  EXPECT_EQ(judged(estimate, Standing{0.1F, 2.0}), Reason::kNone);
+  estimate.agreement_in_the_worst = 0.0F;
+  EXPECT_NE(judged(estimate, Standing{0.1F, 2.0}), Reason::kNone);
 }
 
 // What is enough near a narrow prior is not enough far away in a wide one, where something always fits.

@@ -208,6 +208,62 @@ TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
   }
 }
 
+// What is visible is drawn anew only when the camera has moved; until then the known edges are projected.
+TEST(Localizer, AStandingCameraLooksOnce) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  Localizer localizer(map, camera, {});
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  constexpr PriorSigmas kFollowed{.x_m = 0.008, .y_m = 0.008, .z_m = 0.003, .heading_rad = 0.004, .tilt_rad = 0.002};
+  UnlimitedBudget budget;
+  const auto looks_at = [&](const Pose& X_WC, std::uint32_t seed) {
+    const Picture picture(map, X_WC, camera, 1.5, seed);
+    const Correction answer = localizer.correct(picture.view(), prior_at(X_WC, kFollowed), budget);
+    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_LT(error_of(X_WC, answer.X_WC).position_m, 0.02);
+    return answer.looks;
+  };
+  EXPECT_GE(looks_at(truth, 1), 1);
+  int looks = 0;
+  for (std::uint32_t seed = 2; seed < 8; ++seed) looks += looks_at(truth, seed);
+  EXPECT_EQ(looks, 0);
+  const Pose turned = in_small_room(1.0, 1.6, 0.3);
+  EXPECT_GE(looks_at(turned, 9), 1);
+}
+
+// Without its rivals a pose is not known to be the only one: what an image's budget does not hold is searched over several.
+TEST(Localizer, APriorThatNeedsMoreStartsThanTheBudgetHoldsIsSearchedOverImages) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, camera, 1.5, 4);
+  const PriorSigmas wider{.x_m = 0.02, .y_m = 0.02, .z_m = 0.005, .heading_rad = 0.015, .tilt_rad = 0.004};
+  for (const int units : {4, 9, 1000}) {
+    Localizer localizer(map, camera, {});
+    CountedBudget budget(units);
+    const Correction first = localizer.correct(picture.view(), prior_at(truth, wider), budget);
+    EXPECT_EQ(first.reason, units < 1000 ? Reason::kSearching : Reason::kNone) << units;
+  }
+}
+
+// However little an image is granted, a search comes to its end.
+TEST(LocalizerProperty, ASearchEndsWhateverItIsGranted) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = room_camera();
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, camera, 1.5, 1);
+  for (const int units : {1, 2, 4, 7}) {
+    Localizer localizer(map, camera, {});
+    int images = 0;
+    Reason reason = Reason::kSearching;
+    for (; reason == Reason::kSearching && images < 2000; ++images) {
+      CountedBudget budget(units);
+      reason = localizer.correct(picture.view(), prior_at(truth, PriorSigmas::floor()), budget).reason;
+    }
+    EXPECT_NE(reason, Reason::kSearching) << units;
+  }
+}
+
 TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
   testing::MapBuilder b;
   const std::uint32_t floor = b.rectangle({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, b.grey(0.2F));

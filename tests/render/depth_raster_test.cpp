@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/render/reproject.h"
 #include "tests/render/box_map.h"
 #include "tests/support/allocation_guard.h"
 
@@ -392,54 +391,16 @@ TEST(DepthRasterAlloc, LookingTakesNoMemory) {
   }
   DepthRaster raster(map, {});
   std::vector<VisiblePiece> pieces;
-  std::vector<VisiblePiece> kept;
   pieces.reserve(1000);
-  kept.reserve(1000);
   Camera lens;
   lens.k1 = -0.07;
   const test::AllocationGuard guard;
   for (int i = 0; i < 20; ++i) {
     const Pose X_WC = looking_from({-1.0, 0.1 * i, 1.5}, {3.0, 0.0, 0.0});
     raster.look(X_WC, i % 2 == 0 ? Camera() : lens, pieces);
-    reproject(map, X_WC, lens, pieces, kept);
   }
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_FALSE(pieces.empty());
-}
-
-TEST(Reproject, GivesWhatALookGivesWhenNothingIsHidden) {
-  Map map;
-  for (int i = 0; i < 6; ++i) {
-    add_rectangle(map, {4.0F, static_cast<float>(i) - 3.0F, 0.0F}, {0.0F, 0.7F, 0.0F}, {0.0F, 0.0F, 1.0F});
-  }
-  const Camera camera;
-  const auto known = seen(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.5}));
-  const Pose X_WC = looking_from({0.1, 0.05, 1.02}, {4.0, 0.1, 0.5});
-  const auto truth = seen(map, X_WC);
-  std::vector<VisiblePiece> now;
-  now.reserve(100);
-  reproject(map, X_WC, camera, known, now);
-  ASSERT_GT(now.size(), 10U);
-  for (const VisiblePiece& piece : now) {
-    const auto same = std::find_if(truth.begin(), truth.end(), [&](const auto& p) { return p.edge == piece.edge; });
-    if (same == truth.end() || piece.from != 0.0F || piece.to != 1.0F) continue;
-    EXPECT_LT((same->p0 - piece.p0).norm(), 0.2F);
-    EXPECT_LT((same->p1 - piece.p1).norm(), 0.2F);
-  }
-}
-
-TEST(Reproject, CutsWhatLeavesTheViewAndKeepsToItsRoom) {
-  Map map;
-  add_rectangle(map, {-5.0F, -0.4F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, 0.8F, 0.0F});
-  const std::vector<VisiblePiece> known = {{0, 0.0F, 1.0F, {}, {}}, {2, 0.0F, 1.0F, {}, {}}, {1, 0.0F, 1.0F, {}, {}}};
-  std::vector<VisiblePiece> now;
-  now.reserve(2);
-  reproject(map, looking_from({0.0, 0.0, 1.0}, {4.0, 0.0, 0.9}), Camera(), known, now);
-  ASSERT_EQ(now.size(), 2U);
-  EXPECT_GT(now[0].from, 0.5F);
-  EXPECT_NEAR(std::max(now[0].p0.y(), now[0].p1.y()), 479.5F, 0.1F);
-  EXPECT_TRUE(look_again(Pose::Identity(), looking_from({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}), {}));
-  EXPECT_FALSE(look_again(Pose::Identity(), Pose::Identity(), {}));
 }
 
 }  // namespace
