@@ -31,7 +31,8 @@ struct RasterParameters {
     visit.number("piece_least_px", self.piece_least_px, {0.0, 100.0}, "px", "shorter pieces are left out");
     visit.number("surface_least_cells", self.surface_least_cells, {0.0, 50.0}, "",
                  "surfaces that look smaller than this from end to end hide nothing");
-    visit.number("surfaces_most", self.surfaces_most, {1, 10000000}, "", "drawn, nearest and largest first");
+    visit.number("surfaces_most", self.surfaces_most, {1, 10000000}, "",
+                 "drawn, or parts of 64 triangles of larger ones; nearest first");
     visit.number("triangles_most", self.triangles_most, {1, 10000000}, "", "drawn at most");
     visit.number("edges_most", self.edges_most, {1, 10000000}, "", "looked at, nearest and longest first");
     visit.number("looked_at_most", self.looked_at_most, {64, 10000000}, "",

@@ -187,8 +187,14 @@ void SphereGroups::keep_preferred(const Frustum& frustum) {
     ranked_.push_back(
         {preference_ == Preference::kNearest ? distance - radius : distance / std::max(radius, 1e-6F), place});
   }
-  if (ranked_.size() > chosen_most_) {
-    const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(chosen_most_);
+  std::size_t chosen_most = chosen_most_;
+  if (preference_ == Preference::kNearest) {
+    const auto holds_camera = [](const Ranked& each) { return each.rank <= 0.0F; };
+    const auto about = std::count_if(ranked_.begin(), ranked_.end(), holds_camera);
+    chosen_most = std::max(chosen_most, static_cast<std::size_t>(about));
+  }
+  if (ranked_.size() > chosen_most) {
+    const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(chosen_most);
     std::nth_element(ranked_.begin(), end, ranked_.end(), better);
     if (preference_ == Preference::kNearest) reach_m_ = std::min(reach_m_, end->rank);
     ranked_.erase(end, ranked_.end());
@@ -205,10 +211,12 @@ void SphereGroups::keep_within_weight() {
   if (weight <= weight_most_) return;
   std::sort(ranked_.begin(), ranked_.end(), better);
   weight = 0;
+  // A sphere that holds the camera may hide whatever there is: left out, nothing could be told of any place.
   const auto end = std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& kept) {
     weight += weight_[kept.index];
-    return weight > weight_most_;
+    return weight > weight_most_ && kept.rank > 0.0F;
   });
+  if (end == ranked_.end()) return;
   reach_m_ = std::min(reach_m_, end->rank);
   ranked_.erase(end, ranked_.end());
 }

@@ -31,7 +31,7 @@ struct SelectionLimits {
 
 /// What is left where more is in view than the limits allow.
 enum class Preference : std::uint8_t {
-  kNearest,  ///< what may hide others: nothing nearer than reach_m() is missing.
+  kNearest,  ///< what may hide others: nothing nearer than reach_m() is missing. What holds the camera is taken whatever the limits say.
   kLargest,  ///< by what they look like: radius over distance.
 };
 

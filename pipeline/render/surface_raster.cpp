@@ -2,39 +2,82 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 namespace cgsr::render {
 namespace {
 
 using Sphere = SphereGroups::Sphere;
 
-std::vector<Sphere> spheres_of_surfaces(const world::Map& map) {
+// A floor of ten thousand triangles is in view as a whole, wherever the camera is in the room; of its parts few are.
+constexpr std::size_t kTrianglesOfAPart = 64;
+
+// Halves triangles by where they lie until each half is small enough, so that what is near each other stays together.
+void split(const world::Map& map, std::span<std::uint32_t> triangles, std::vector<std::span<std::uint32_t>>& parts) {
+  if (triangles.size() <= kTrianglesOfAPart) {
+    parts.push_back(triangles);
+    return;
+  }
+  const auto middle_of = [&](std::uint32_t name) -> Eigen::Vector3f {
+    const world::Triangle& t = map.triangles[name];
+    return map.vertices[t[0]] + map.vertices[t[1]] + map.vertices[t[2]];
+  };
+  Eigen::AlignedBox3f box;
+  for (const std::uint32_t name : triangles) box.extend(middle_of(name));
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const std::size_t half = triangles.size() / 2;
+  std::nth_element(triangles.begin(), triangles.begin() + static_cast<std::ptrdiff_t>(half), triangles.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return middle_of(a)[axis] < middle_of(b)[axis]; });
+  split(map, triangles.first(half), parts);
+  split(map, triangles.subspan(half), parts);
+}
+
+std::vector<Sphere> spheres_of(const world::Map& map, std::span<const std::uint32_t> order,
+                               std::span<const SurfaceRaster::Part> parts) {
   std::vector<Sphere> spheres;
-  spheres.reserve(map.surfaces.size());
-  for (const world::Surface& surface : map.surfaces) {
+  spheres.reserve(parts.size());
+  for (const SurfaceRaster::Part& part : parts) {
     Eigen::AlignedBox3f box;
-    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
-      for (const std::uint32_t v : map.triangles[surface.first_triangle + t]) box.extend(map.vertices[v]);
+    for (const std::uint32_t name : order.subspan(part.first, part.count)) {
+      for (const std::uint32_t v : map.triangles[name]) box.extend(map.vertices[v]);
     }
-    if (box.isEmpty()) {
-      spheres.push_back({});
-    } else {
-      spheres.push_back({box.center(), 0.5F * box.diagonal().norm(), surface.triangle_count});
-    }
+    spheres.push_back({box.center(), 0.5F * box.diagonal().norm(), part.count});
   }
   return spheres;
 }
 
 }  // namespace
 
+std::vector<SurfaceRaster::Part> SurfaceRaster::parts_of(const world::Map& map, std::vector<std::uint32_t>& order) {
+  order.resize(map.triangles.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::vector<Part> parts;
+  parts.reserve(map.surfaces.size());
+  std::vector<std::span<std::uint32_t>> pieces;
+  for (std::uint32_t name = 0; name < map.surfaces.size(); ++name) {
+    const world::Surface& surface = map.surfaces[name];
+    if (surface.triangle_count == 0) continue;
+    pieces.clear();
+    split(map, std::span(order).subspan(surface.first_triangle, surface.triangle_count), pieces);
+    for (const auto& piece : pieces) {
+      parts.push_back(
+          {name, static_cast<std::uint32_t>(piece.data() - order.data()), static_cast<std::uint32_t>(piece.size())});
+    }
+  }
+  return parts;
+}
+
 SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& parameters)
     : map_(map),
       parameters_(parameters),
-      surfaces_(spheres_of_surfaces(map),
-                {.looked_at_most = parameters.looked_at_most,
-                 .chosen_most = parameters.surfaces_most,
-                 .weight_most = parameters.triangles_most},
-                Preference::kNearest),
+      parts_(parts_of(map, order_)),
+      in_view_(spheres_of(map, order_, parts_),
+               {.looked_at_most = parameters.looked_at_most,
+                .chosen_most = parameters.surfaces_most,
+                .weight_most = parameters.triangles_most},
+               Preference::kNearest),
       corners_(map.vertices.size()),
       planes_(map.surfaces.size()),
       front_(map.surfaces.size()),
@@ -71,13 +114,14 @@ void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuff
   place(X_WC, view);
   buffer.clear();
   const double least_surface = 0.5 * parameters_.surface_least_cells / std::max(view_->fx, view_->fy);
-  for (const std::uint32_t name : surfaces_.select(frustum_, least_surface)) {
+  for (const std::uint32_t chosen : in_view_.select(frustum_, least_surface)) {
+    const Part& part = parts_[chosen];
+    const std::uint32_t name = part.surface;
     const world::Surface& surface = map_.surfaces[name];
     if (!plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
     const DepthPlane& plane = planes_[name];
     front_[name] = surface.normal.dot(p_WC_) > surface.offset_m ? 1 : 0;
-    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
-      const std::uint32_t index = surface.first_triangle + t;
+    for (const std::uint32_t index : std::span(order_).subspan(part.first, part.count)) {
       const world::Triangle& triangle = map_.triangles[index];
       const std::array<const ViewedCorner*, 3> c = {&corner(triangle[0]), &corner(triangle[1]), &corner(triangle[2])};
       if (c[0]->w > 0.0F && c[1]->w > 0.0F && c[2]->w > 0.0F) {

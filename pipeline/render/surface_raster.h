@@ -17,6 +17,13 @@ namespace cgsr::render {
 /// Made for one map, which outlives it; allocates nothing after construction.
 class SurfaceRaster {
  public:
+  /// Some of a surface's triangles, chosen or left out together.
+  struct Part {
+    std::uint32_t surface = 0;
+    std::uint32_t first = 0;  ///< place in order_.
+    std::uint32_t count = 0;
+  };
+
   SurfaceRaster(const world::Map& map, const RasterParameters& parameters);
 
   /// \param view  of a camera without lens, outlives what is asked later.  \param buffer  of the view's size; cleared first.
@@ -25,7 +32,7 @@ class SurfaceRaster {
   [[nodiscard]] const View& view() const { return *view_; }
   [[nodiscard]] const Frustum& frustum() const { return frustum_; }
   /// How far from the camera everything that hides something was drawn (SphereGroups::reach_m).
-  [[nodiscard]] float reach_m() const { return surfaces_.reach_m(); }
+  [[nodiscard]] float reach_m() const { return in_view_.reach_m(); }
 
   /// A corner of the map in this view.
   const ViewedCorner& corner(std::uint32_t vertex);
@@ -55,13 +62,16 @@ class SurfaceRaster {
     std::uint32_t look = 0;  ///< by which it was set.
   };
 
+  static std::vector<Part> parts_of(const world::Map& map, std::vector<std::uint32_t>& order);
   void place(const geometry::Pose& X_WC, const View& view);
   void draw_clipped(const std::array<const ViewedCorner*, 3>& corners, const DepthPlane& plane, std::uint32_t triangle,
                     DepthBuffer& buffer) const;
 
   const world::Map& map_;
   RasterParameters parameters_;
-  SphereGroups surfaces_;
+  std::vector<std::uint32_t> order_;  ///< triangles, those of a part together.
+  std::vector<Part> parts_;
+  SphereGroups in_view_;                   ///< of the parts.
   std::vector<Corner> corners_;            ///< [vertex], as of the look that `look` says.
   std::vector<DepthPlane> planes_;         ///< [surface], likewise.
   std::vector<std::uint8_t> front_;        ///< [surface], likewise.

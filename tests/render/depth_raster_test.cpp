@@ -309,6 +309,60 @@ TEST(DepthRaster, AMapBeyondTheBudgetKeepsTheNearest) {
   for (const auto& p : pieces) EXPECT_LT(map.vertices[map.edges[p.edge].vertices[0]].x(), 20.0F);
 }
 
+/// A rectangle's inside as a grid of triangles, as modelling programs export a floor; its borders are not edges.
+void add_grid(Map& map, const Vector3f& corner, const Vector3f& e1, const Vector3f& e2, std::uint32_t cells) {
+  const auto v = static_cast<std::uint32_t>(map.vertices.size());
+  world::Surface surface;
+  surface.first_triangle = static_cast<std::uint32_t>(map.triangles.size());
+  surface.triangle_count = 2 * cells * cells;
+  surface.normal = e1.cross(e2).normalized();
+  surface.offset_m = surface.normal.dot(corner);
+  map.surfaces.push_back(surface);
+  const auto share = [&](std::uint32_t i) { return static_cast<float>(i) / static_cast<float>(cells); };
+  for (std::uint32_t i = 0; i <= cells; ++i) {
+    for (std::uint32_t j = 0; j <= cells; ++j) map.vertices.emplace_back(corner + share(i) * e1 + share(j) * e2);
+  }
+  const std::uint32_t row = cells + 1;
+  for (std::uint32_t i = 0; i < cells; ++i) {
+    for (std::uint32_t j = 0; j < cells; ++j) {
+      const std::uint32_t at = v + i * row + j;
+      map.triangles.push_back({at, at + row, at + row + 1});
+      map.triangles.push_back({at, at + row + 1, at + 1});
+    }
+  }
+}
+
+// A floor and walls that alone have more triangles than are drawn: the nearest parts of them are, and the room on them is seen.
+TEST(DepthRaster, ARoomOfFineTrianglesIsSeenLikeOneOfLargeOnes) {
+  const auto furnish = [](Map& map) {
+    for (int i = 0; i < 5; ++i) {
+      const Vector3f a(1.5F + 0.4F * static_cast<float>(i), -1.2F + 0.6F * static_cast<float>(i), 0.0F);
+      add_box(map, a, a + Vector3f(0.3F, 0.3F, 0.5F));
+    }
+  };
+  Map coarse;
+  Map fine;
+  furnish(coarse);
+  furnish(fine);
+  constexpr std::uint32_t kCells = 80;  // 12,800 triangles each
+  const auto add_to_both = [&](const Vector3f& corner, const Vector3f& e1, const Vector3f& e2) {
+    add_grid(coarse, corner, e1, e2, 1);
+    add_grid(fine, corner, e1, e2, kCells);
+  };
+  add_to_both({-4, -4, 0}, {8, 0, 0}, {0, 8, 0});
+  add_to_both({4, -4, 0}, {0, 8, 0}, {0, 0, 3});
+  const Pose X_WC = looking_from({0.0, 0.0, 1.2}, {3.0, 0.2, 0.2});
+  const auto expected = seen(coarse, X_WC);
+  const auto got = seen(fine, X_WC);
+  ASSERT_GT(expected.size(), 20U);
+  ASSERT_EQ(got.size(), expected.size());
+  for (std::size_t i = 0; i < got.size(); ++i) {
+    EXPECT_EQ(got[i].edge, expected[i].edge);
+    EXPECT_LT((got[i].p0 - expected[i].p0).norm(), 1.0F);
+    EXPECT_LT((got[i].p1 - expected[i].p1).norm(), 1.0F);
+  }
+}
+
 // With a budget that holds only a part of what is in view, what is answered is still visible in the whole map.
 TEST(DepthRasterProperty, BeyondTheBudgetHiddenIsHiddenAndTheLongestNearOnesStay) {
   std::mt19937 random(19);
