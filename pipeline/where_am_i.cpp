@@ -12,7 +12,7 @@ WhereAmI::WhereAmI(KnownSelf self)
       axle_height_m_(self.axle_height_m),
       camera_(self.camera),
       working_(localization::working_camera(self.camera)),
-      localizer_(map_, self.camera, self.localizer),
+      localizer_(*map_, self.camera, self.localizer, std::move(self.expectation)),
       tracker_(localizer_, self.X_RC, self.tracking),
       own_pixels_(std::move(self.own_pixels)),
       odometry_(self.odometry) {

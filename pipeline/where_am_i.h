@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,8 +15,9 @@ namespace cgsr {
 
 /// What a robot with a map knows of itself before the first image.
 struct KnownSelf {
-  world::Map map;
-  geometry::Camera camera;  ///< with its lens, in the size of the images that come.
+  std::unique_ptr<const world::Map> map;
+  std::unique_ptr<render::Expectation> expectation;  ///< of that map; none: Localizer's own.
+  geometry::Camera camera;                           ///< with its lens, in the size of the images that come.
   geometry::Pose X_RC = geometry::Pose::Identity();
   double axle_height_m = 0.24;  ///< about which the base leans.
   OdometryScales odometry;
@@ -50,10 +52,10 @@ class WhereAmI {
   /// \return X_WR of a pose X_WC.
   [[nodiscard]] geometry::Pose robot_at(const geometry::Pose& X_WC) const { return X_WC * X_CR_; }
   [[nodiscard]] const geometry::Pose& X_CR() const { return X_CR_; }
-  [[nodiscard]] const world::Map& map() const { return map_; }
+  [[nodiscard]] const world::Map& map() const { return *map_; }
 
  private:
-  world::Map map_;
+  std::unique_ptr<const world::Map> map_;
   geometry::Pose X_CR_;
   double axle_height_m_;
   geometry::Camera camera_;

@@ -15,9 +15,19 @@ enum class Method : std::uint8_t {
 inline constexpr Named<Method> kMethodNames[] = {
     {"glcorrect", Method::kGlCorrect}, {"stronger", Method::kStronger}, {"paper", Method::kPaper}};
 
+/// What draws the edges that should be visible (4.2.2).
+enum class ExpectationKind : std::uint8_t {
+  kRaster,  ///< render::DepthRaster: the budget path.
+  kOsmesa,  ///< render::OsmesaExpectation: OpenGL, as the dissertation has it; whoever makes a Localizer hands it over.
+};
+
+inline constexpr Named<ExpectationKind> kExpectationKindNames[] = {{"raster", ExpectationKind::kRaster},
+                                                                   {"osmesa", ExpectationKind::kOsmesa}};
+
 /// How a camera's pose is corrected. Pixels are those of the grey image worked on: 320x240 for a 640x480 camera.
 struct LocalizerParameters {
   Method method = Method::kGlCorrect;
+  ExpectationKind expectation = ExpectationKind::kRaster;
   bool search = true;
   bool gate = true;
   int iterations = 6;
@@ -49,6 +59,10 @@ struct LocalizerParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("method", self.method, kMethodNames, "how a pose is corrected");
+    visit.choice(
+        "expectation", self.expectation, kExpectationKindNames,
+        "what draws the edges that should be visible: our own depth buffer, or OpenGL through OSMesa, which costs "
+        "ten times as much");
     visit.flag("search", self.search, "several starts where the prior is wide; off: from the prior alone");
     visit.flag("gate", self.gate, "a pose is corrected only where the evidence is enough");
     visit.number("iterations", self.iterations, {1, 50}, "", "expectation and maximisation alternate at most so often");

@@ -26,6 +26,8 @@ class Context : public OsmesaContext {
     return true;
   }
 
+  void release() override { OSMesaMakeCurrent(nullptr, nullptr, GL_UNSIGNED_BYTE, 0, 0); }
+
   [[nodiscard]] std::span<const std::uint32_t> pixels() const override { return pixels_; }
 
   [[nodiscard]] std::span<const std::uint32_t> depths() const override {

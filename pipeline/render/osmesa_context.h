@@ -22,6 +22,9 @@ class OsmesaContext {
   /// \return whether it could.
   virtual bool make_current() = 0;
 
+  /// Leaves the thread, for another to draw.
+  virtual void release() = 0;
+
   /// What was drawn, four bytes a pixel as R | G << 8 | B << 16 | A << 24, the top row first; whole after glFinish(). Never copied.
   [[nodiscard]] virtual std::span<const std::uint32_t> pixels() const = 0;
 

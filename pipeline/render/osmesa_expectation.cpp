@@ -33,6 +33,7 @@ Result<std::unique_ptr<OsmesaExpectation>> OsmesaExpectation::make(const world::
   made->upload();
   std::vector<VisiblePiece> pieces;
   for (int i = 0; i < 2; ++i) made->look(geometry::Pose::Identity(), geometry::Camera(), pieces);
+  made->context_->release();
   return made;
 }
 

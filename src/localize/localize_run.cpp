@@ -9,6 +9,7 @@
 #include "platform/count_marks.h"
 #include "platform/work_budget.h"
 #include "src/input/camera_file.h"
+#include "src/plug_in/expectation.h"
 
 namespace cgsr::app {
 namespace {
@@ -50,7 +51,9 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   if (!map) return tl::unexpected(map.error());
   state.map = std::move(*map);
   if (state.map.edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
-  state.localizer.emplace(state.map, state.camera, state.config.localizer);
+  auto expectation = make_expectation(state.map, state.config.localizer);
+  if (!expectation) return tl::unexpected(expectation.error());
+  state.localizer.emplace(state.map, state.camera, state.config.localizer, std::move(*expectation));
   if (auto opened = run.open_poses(options); !opened) return tl::unexpected(opened.error());
   if (auto opened = run.open_outputs(options); !opened) return tl::unexpected(opened.error());
   return run;

@@ -17,6 +17,7 @@
 #include "pipeline/world/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
+#include "src/plug_in/expectation.h"
 #include "src/robot/boot_pose.h"
 #include "src/robot/simulation_plugin.h"
 
@@ -171,7 +172,10 @@ Result<void> Robot::make_whereabouts(VisionParts& parts) {
   if (!boot) return tl::unexpected(boot.error());
   KnownSelf self;
   notes_.push_back(fmt::format("map {}: {} surfaces, {} edges", known.map, map->surfaces.size(), map->edges.size()));
-  self.map = std::move(*map);
+  self.map = std::make_unique<const world::Map>(std::move(*map));
+  auto expectation = make_expectation(*self.map, known.localizer);
+  if (!expectation) return tl::unexpected(expectation.error());
+  self.expectation = std::move(*expectation);
   self.camera = *camera_model_;
   self.X_RC = X_RC_;
   self.axle_height_m = known.axle_height_m;
