@@ -91,13 +91,12 @@ std::vector<Pose> scaled_odometry(const std::vector<Pose>& X_OR, double forward,
   return out;
 }
 
-Result<OdometryScales> calibrate_odometry(const std::vector<Pose>& X_OR, const std::vector<Pose>& X_WR,
-                                          double stretch_m) {
+Result<OdometryFit> calibrate_odometry(const std::vector<Pose>& X_OR, const std::vector<Pose>& X_WR, double stretch_m) {
   if (X_OR.size() != X_WR.size()) {
     return fail(
         fmt::format("{} poses of the odometry and {} true ones; expected as many of both", X_OR.size(), X_WR.size()));
   }
-  OdometryScales scales;
+  OdometryFit scales;
   for (std::size_t i = 1; i < X_OR.size(); ++i) {
     scales.way_m += (X_OR[i].translation() - X_OR[i - 1].translation()).norm();
     scales.turned_rad += std::abs(turn_between(X_OR[i - 1], X_OR[i]));

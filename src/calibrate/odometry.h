@@ -8,7 +8,7 @@
 namespace cgsr::app {
 
 /// By what the odometry's way and turn are to be multiplied.
-struct OdometryScales {
+struct OdometryFit {
   double forward = 1.0;
   double turn = 1.0;
   double sigma_forward = 0.0;
@@ -28,7 +28,7 @@ std::vector<geometry::Pose> scaled_odometry(const std::vector<geometry::Pose>& X
 /// Least squares over stretches of about `stretch_m` of way (or 60 degrees of turn): each stretch of the scaled odometry is laid on the true
 /// one's first pose and compared at its end, so that errors of the start and slip of other stretches stay out.
 /// \return or why not: fewer than 3 stretches, hardly any way or turn.
-Result<OdometryScales> calibrate_odometry(const std::vector<geometry::Pose>& X_OR,
-                                          const std::vector<geometry::Pose>& X_WR, double stretch_m = 2.0);
+Result<OdometryFit> calibrate_odometry(const std::vector<geometry::Pose>& X_OR, const std::vector<geometry::Pose>& X_WR,
+                                       double stretch_m = 2.0);
 
 }  // namespace cgsr::app
