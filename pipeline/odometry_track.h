@@ -12,14 +12,16 @@ namespace cgsr {
 
 /// By what the base's way and turn are to be multiplied: what `cgsr calibrate odometry` finds.
 struct OdometryScales {
+  static constexpr Range<double> kRange{0.5, 2.0};
+
   double scale_forward = 1.0;
   double scale_turn = 1.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("scale_forward", self.scale_forward, {0.5, 2.0}, "",
+    visit.number("scale_forward", self.scale_forward, kRange, "",
                  "the base's way times this is the robot's: cgsr calibrate odometry");
-    visit.number("scale_turn", self.scale_turn, {0.5, 2.0}, "", "likewise, its turn");
+    visit.number("scale_turn", self.scale_turn, kRange, "", "likewise, its turn");
   }
 };
 

@@ -11,6 +11,7 @@
 #include "src/calibrate/odometry.h"
 #include "src/command.h"
 #include "src/input/pose_pairs.h"
+#include "src/input/robot_calibration.h"
 #include "src/output/picture.h"
 #include "src/output/text_file.h"
 
@@ -24,6 +25,7 @@ constexpr double kDegrees = 180.0 / 3.14159265358979;
 struct Options {
   std::string odometry;
   std::string poses;
+  std::string mount;
   double stretch_m = 2.0;
   std::string output;
   std::string picture;
@@ -65,8 +67,19 @@ cv::Mat draw_ways(const std::vector<Pose>& before, const std::vector<Pose>& afte
   return picture;
 }
 
+/// The odometry's poses and the robot's true ones, those of its camera turned into them where a mount is given.
+Result<PosePairs> poses_of_robot(const Options& options) {
+  auto pairs = read_pairs(options.odometry, options.poses);
+  if (!pairs || options.mount.empty()) return pairs;
+  const auto X_RC = read_mount(options.mount);
+  if (!X_RC) return tl::unexpected(X_RC.error());
+  const Pose X_CR = X_RC->inverse();
+  for (Pose& X : pairs->second) X = X * X_CR;
+  return pairs;
+}
+
 int run_odometry(const Options& options) {
-  const auto pairs = read_pairs(options.odometry, options.poses);
+  const auto pairs = poses_of_robot(options);
   if (!pairs) return report(pairs.error());
   const auto scales = calibrate_odometry(pairs->first, pairs->second, options.stretch_m);
   if (!scales) return report(scales.error());
@@ -118,7 +131,13 @@ void add_calibrate_odometry(CLI::App& calibrate, int& exit_code) {
       calibrate.add_subcommand("odometry", "scales of way and turn, from a round with true or localised poses");
   odometry->add_option("--odometry", options->odometry, "the odometry's poses of the robot, CSV with frame")
       ->required();
-  odometry->add_option("--poses", options->poses, "true or localised poses of the robot, CSV with frame")->required();
+  odometry
+      ->add_option("--poses", options->poses,
+                   "true or localised poses, CSV with frame: the robot's, or with --mount the camera's, as cgsr "
+                   "localize writes them")
+      ->required();
+  odometry->add_option("--mount", options->mount,
+                       "robot.toml with [mount], as cgsr calibrate mount writes it: --poses are the camera's");
   odometry->add_option("--stretch", options->stretch_m, "way in metres after which ends are compared")
       ->check(CLI::Range(0.2, 100.0))
       ->capture_default_str();

@@ -1,9 +1,11 @@
 #include "src/calibrate/odometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
 
+#include "pipeline/odometry_track.h"
 #include "src/calibrate/least_squares.h"
 
 namespace cgsr::app {
@@ -18,6 +20,14 @@ constexpr double kLeastTurn_rad = kPi;
 constexpr int kFewestStretches = 3;
 /// A radian of a stretch's end weighs as so many metres.
 constexpr double kLever_m = 1.0;
+/// What may be left per stretch: the ways themselves may slip by so much of their length, and found poses are off by some centimetres.
+constexpr double kGreatestRms_m = 0.10;
+constexpr double kGreatestRmsOfStretch = 0.05;
+constexpr double kGreatestRms_rad = 5.0 * kPi / 180.0;
+/// A robot that balances leans by less; a camera's frame, whose z points ahead, by about 90 degrees.
+constexpr double kGreatestLean_rad = 30.0 * kPi / 180.0;
+/// Wheels are off by a few percent: what is known no better than this corrects nothing.
+constexpr double kGreatestSigma = 0.03;
 
 double turn_between(const Pose& from, const Pose& to) {
   return geometry::heading_of(from.inverse() * to);
@@ -71,6 +81,39 @@ void note_rms(const Eigen::VectorXd& residuals, double& metres, double& radians)
   radians = std::sqrt(squares_rad / static_cast<double>(n));
 }
 
+/// Whether the fit says anything: what is left, what a robot's file takes, how sure it is.
+Result<void> check_fit(const OdometryFit& fit, double stretch_m) {
+  const double greatest_m = std::max(kGreatestRms_m, kGreatestRmsOfStretch * stretch_m);
+  if (!(fit.rms_m <= greatest_m && fit.rms_rad <= kGreatestRms_rad)) {
+    return fail(fmt::format(
+        "scaled, the odometry's stretches end {:.1f} cm and {:.1f} degrees (RMS) off the true ones; expected at most "
+        "{:.0f} cm and {:.0f} degrees: are both files of the same drive?",
+        100.0 * fit.rms_m, fit.rms_rad * 180.0 / kPi, 100.0 * greatest_m, kGreatestRms_rad * 180.0 / kPi));
+  }
+  struct Scale {
+    const char* name;
+    double value;
+    double sigma;
+  };
+  for (const auto& [name, value, sigma] :
+       {Scale{"forward", fit.forward, fit.sigma_forward}, Scale{"turn", fit.turn, fit.sigma_turn}}) {
+    constexpr Range<double> kTaken = OdometryScales::kRange;
+    if (!(value >= kTaken.minimum && value <= kTaken.maximum)) {
+      return fail(
+          fmt::format("the scale of {} is {:.4f}; expected {}..{}, as a robot's file takes it: are both files "
+                      "in metres and of the same robot?",
+                      name, value, kTaken.minimum, kTaken.maximum));
+    }
+    if (!(sigma <= kGreatestSigma)) {
+      return fail(
+          fmt::format("the scale of {} is {:.4f} +- {:.4f}; expected a standard error of at most {}: drive a "
+                      "longer round with straight pieces and turns",
+                      name, value, sigma, kGreatestSigma));
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<Pose> scaled_odometry(const std::vector<Pose>& X_OR, double forward, double turn) {
@@ -96,6 +139,14 @@ Result<OdometryFit> calibrate_odometry(const std::vector<Pose>& X_OR, const std:
     return fail(
         fmt::format("{} poses of the odometry and {} true ones; expected as many of both", X_OR.size(), X_WR.size()));
   }
+  double lean = 0.0;
+  for (const Pose& X : X_WR) lean = std::max(lean, std::acos(std::clamp(X.linear()(2, 2), -1.0, 1.0)));
+  if (lean > kGreatestLean_rad) {
+    return fail(
+        fmt::format("the true poses lean by up to {:.0f} degrees; expected the robot's, upright to {:.0f} degrees: "
+                    "those of its camera need --mount",
+                    lean * 180.0 / kPi, kGreatestLean_rad * 180.0 / kPi));
+  }
   OdometryFit scales;
   for (std::size_t i = 1; i < X_OR.size(); ++i) {
     scales.way_m += (X_OR[i].translation() - X_OR[i - 1].translation()).norm();
@@ -119,6 +170,7 @@ Result<OdometryFit> calibrate_odometry(const std::vector<Pose>& X_OR, const std:
   scales.sigma_forward = fit.sigma(0);
   scales.sigma_turn = fit.sigma(1);
   note_rms(fit.residuals, scales.rms_m, scales.rms_rad);
+  if (auto good = check_fit(scales, stretch_m); !good) return tl::unexpected(good.error());
   return scales;
 }
 

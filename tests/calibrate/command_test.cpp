@@ -90,11 +90,16 @@ TEST(CalibrateCommand, OdometryFromARound) {
   const ScratchFolder scratch;
   std::string odometry = "frame,tx,ty,tz,qw,qx,qy,qz\n";
   std::string truth = odometry;
+  std::string camera = odometry;
+  Mount mount;
+  mount.X_RC.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  mount.X_RC.translation() = Eigen::Vector3d(0.2, 0.05, 1.1);
   geometry::Pose X_OR = geometry::Pose::Identity();
   geometry::Pose X_WR = geometry::pose_on_floor(1.0, 2.0, 0.3);
   for (int i = 0; i < 300; ++i) {
     if (i % 3 != 1) odometry += fmt::format("{},{}\n", i, pose_as_csv(X_OR));  // not every image has both
     if (i % 3 != 2) truth += fmt::format("{},{}\n", i, pose_as_csv(X_WR));
+    camera += fmt::format("{},{}\n", i, pose_as_csv(X_WR * mount.X_RC));
     X_OR = X_OR * geometry::pose_on_floor(0.05, 0.0, 0.04);
     X_WR = X_WR * geometry::pose_on_floor(0.052, 0.0, 0.038);
   }
@@ -109,6 +114,19 @@ TEST(CalibrateCommand, OdometryFromARound) {
   EXPECT_NEAR(json["scale_turn"].get<double>(), 0.95, 0.002);
   EXPECT_THAT(testing::read_text(scratch / "odometry.toml"), HasSubstr("scale_turn = 0.9"));
   EXPECT_TRUE(std::filesystem::exists(scratch / "ways.png"));
+
+  // The same from the camera's poses, as cgsr localize writes them.
+  testing::write_text(scratch / "robot.toml", mount_as_toml(mount));
+  testing::write_text(scratch / "camera.csv", camera);
+  const auto seen = run_cgsr({"calibrate", "odometry", "--odometry", scratch / "odometry.csv", "--poses",
+                              scratch / "camera.csv", "--mount", scratch / "robot.toml", "--json"});
+  ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+  EXPECT_NEAR(nlohmann::json::parse(seen.output)["scale_forward"].get<double>(), 1.04, 0.002);
+  const auto unturned = run_cgsr({"calibrate", "odometry", "--odometry", scratch / "odometry.csv", "--poses",
+                                  scratch / "camera.csv", "--output", scratch / "no.toml"});
+  EXPECT_EQ(unturned.exit_code, 1);
+  EXPECT_THAT(unturned.errors, HasSubstr("lean by up to 90 degrees; expected the robot's"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "no.toml"));
 
   const auto missing =
       run_cgsr({"calibrate", "odometry", "--odometry", scratch / "none.csv", "--poses", scratch / "truth.csv"});

@@ -1,5 +1,9 @@
 #include "src/calibrate/odometry.h"
 
+#include <algorithm>
+#include <string>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/calibrate/board_pictures.h"
@@ -8,6 +12,7 @@ namespace cgsr::app {
 namespace {
 
 using geometry::Pose;
+using ::testing::HasSubstr;
 
 struct Round {
   std::vector<Pose> X_OR;
@@ -15,7 +20,7 @@ struct Round {
 };
 
 /// A round of 40 m with bends to both sides; the odometry counts too little or too much, true poses are off by 1 cm and 0.3 degrees.
-Round drive(std::mt19937& random, double forward, double turn, double noise) {
+Round drive(std::mt19937& random, double forward, double turn, double noise, double step_m = 0.05) {
   Round out;
   Pose X_OR = geometry::pose_on_floor(0.0, 0.0, 0.0);
   Pose X_WR = geometry::pose_on_floor(3.0, 1.0, 2.0);
@@ -29,8 +34,8 @@ Round drive(std::mt19937& random, double forward, double turn, double noise) {
     const auto step = [&](double s, double a) {
       return geometry::pose_on_floor(s * std::cos(0.5 * a), s * std::sin(0.5 * a), a);
     };
-    X_OR = X_OR * step(0.05, 0.05 * bend);
-    X_WR = X_WR * step(forward * 0.05, turn * 0.05 * bend);
+    X_OR = X_OR * step(step_m, 0.05 * bend);
+    X_WR = X_WR * step(forward * step_m, turn * 0.05 * bend);
   }
   return out;
 }
@@ -74,6 +79,39 @@ TEST(OdometryFault, RefusedWithTheReason) {
   round.X_OR.pop_back();
   EXPECT_FALSE(calibrate_odometry(round.X_OR, round.X_WR));
   EXPECT_FALSE(calibrate_odometry({}, {}));
+}
+
+std::string refusal(const Round& round) {
+  const auto fit = calibrate_odometry(round.X_OR, round.X_WR);
+  return fit ? "" : fit.error().message;
+}
+
+// Whatever scales fit best, they say nothing.
+TEST(OdometryFault, PosesThatDoNotBelongToTheOdometryAreRefused) {
+  std::mt19937 random(4);
+  Round round = drive(random, 1.0, 1.0, 1.0);
+  std::rotate(round.X_WR.begin(), round.X_WR.begin() + 100, round.X_WR.end());
+  EXPECT_THAT(refusal(round), HasSubstr("off the true ones; expected at most 10 cm and 5 degrees"));
+
+  round = drive(random, 1.0, 1.0, 1.0);
+  Pose X_RC = Pose::Identity();
+  X_RC.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  for (Pose& X : round.X_WR) X = X * X_RC;
+  EXPECT_THAT(refusal(round), HasSubstr("lean by up to 90 degrees; expected the robot's"));
+}
+
+TEST(OdometryFault, AScaleThatNoRobotsFileTakesIsRefused) {
+  std::mt19937 random(5);
+  EXPECT_THAT(refusal(drive(random, 0.3048, 1.0, 0.0)), HasSubstr("the scale of forward is 0.3048; expected 0.5..2"));
+  EXPECT_THAT(refusal(drive(random, 1.0, 2.2, 0.0)), HasSubstr("the scale of turn is 2.2000; expected 0.5..2"));
+  EXPECT_EQ(refusal(drive(random, 0.55, 1.9, 0.0)), "");
+}
+
+// Nearly on the spot: the turn shows, what a metre is does not.
+TEST(OdometryFault, AScaleThatIsKnownBadlyIsRefused) {
+  std::mt19937 random(6);
+  EXPECT_THAT(refusal(drive(random, 1.0, 1.0, 3.0, 0.004)), HasSubstr("expected a standard error of at most 0.03"));
+  EXPECT_EQ(refusal(drive(random, 1.0, 1.0, 0.1, 0.004)), "");
 }
 
 }  // namespace
