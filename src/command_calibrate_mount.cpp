@@ -148,9 +148,14 @@ int run_mount_from_poses(const Options& options) {
   if (!options.json) {
     fmt::print("residual  {:.2f} cm, {:.2f} degrees RMS over {} pairs of poses\n", 100.0 * mount->rms,
                kDegrees * mount->rms_rad, pairs->frames.size());
+    if (pairs->predicted > 0)
+      fmt::print("left out  {} pairs with a predicted pose (corrected = 0)\n", pairs->predicted);
   }
   return finish_mount(options, *mount,
-                      {{"rms_m", mount->rms}, {"rms_deg", kDegrees * mount->rms_rad}, {"pairs", pairs->frames.size()}});
+                      {{"rms_m", mount->rms},
+                       {"rms_deg", kDegrees * mount->rms_rad},
+                       {"pairs", pairs->frames.size()},
+                       {"predicted", pairs->predicted}});
 }
 
 int run_mount(const Options& options) {

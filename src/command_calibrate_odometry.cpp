@@ -108,12 +108,14 @@ int run_odometry(const Options& options) {
                                       {"rms_before_deg", kDegrees * scales->rms_before_rad},
                                       {"way_m", scales->way_m},
                                       {"turned_deg", kDegrees * scales->turned_rad},
-                                      {"stretches", scales->stretches}}
+                                      {"stretches", scales->stretches},
+                                      {"predicted", pairs->predicted}}
                            .dump(1));
     return kSuccess;
   }
   fmt::print("round     {:.1f} m, turns of {:.0f} degrees, {} stretches\n", scales->way_m,
              kDegrees * scales->turned_rad, scales->stretches);
+  if (pairs->predicted > 0) fmt::print("left out  {} pairs with a predicted pose (corrected = 0)\n", pairs->predicted);
   fmt::print("forward   {:.5f} +- {:.5f}\nturn      {:.5f} +- {:.5f}\n", scales->forward, scales->sigma_forward,
              scales->turn, scales->sigma_turn);
   fmt::print("residual  {:.2f} cm, {:.2f} degrees RMS per stretch; before {:.2f} cm, {:.2f} degrees\n",

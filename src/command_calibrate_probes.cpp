@@ -31,7 +31,8 @@ nlohmann::json three(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-Result<ProbeCalibration> probes_from(const Options& options) {
+/// \param predicted  images left out: their pose is a prediction.
+Result<ProbeCalibration> probes_from(const Options& options, int& predicted) {
   auto setup = open_light_setup(options.config, options.camera, options.mount, options.input);
   if (!setup) return tl::unexpected(setup.error());
   const auto poses = read_poses(options.poses);
@@ -53,6 +54,10 @@ Result<ProbeCalibration> probes_from(const Options& options) {
       if (one.frame ? *one.frame == number : static_cast<int>(i) == number) row = &one;
     }
     if (row == nullptr) return fail(fmt::format("{}: no pose of image {}", options.poses, number));
+    if (!row->corrected) {
+      ++predicted;
+      continue;
+    }
     view.X_WR = row->X;
     view.observation = observer.observe(next.image.view());
     if (view.observation.status != illumination::ObservationStatus::kSeen) {
@@ -62,14 +67,15 @@ Result<ProbeCalibration> probes_from(const Options& options) {
   }
   auto calibrated = calibrate_probes(board, setup->config.probes.board, views, p_WL);
   if (!calibrated) {
-    return fail(
-        fmt::format("{}: {} (the last image without a shadow: {})", options.input, calibrated.error().message, cause));
+    return fail(fmt::format("{}: {} (the last image without a shadow: {}; left out, corrected = 0 in {}: {})",
+                            options.input, calibrated.error().message, cause, options.poses, predicted));
   }
   return calibrated;
 }
 
 int run_probes(const Options& options) {
-  const auto calibration = probes_from(options);
+  int predicted = 0;
+  const auto calibration = probes_from(options, predicted);
   if (!calibration) return report(calibration.error());
   if (!options.output.empty()) {
     if (const auto written = write_file(options.output, probes_as_toml(*calibration)); !written)
@@ -87,12 +93,14 @@ int run_probes(const Options& options) {
     fmt::print("{}\n", nlohmann::json{{"rms_m", calibration->rms_m},
                                       {"rms_before_m", calibration->rms_before_m},
                                       {"images", calibration->views},
+                                      {"predicted", predicted},
                                       {"shadows", calibration->shadows},
                                       {"board", {{"turn_deg", board.turn_deg}, {"probe", probes}}}}
                            .dump(1));
     return kSuccess;
   }
   fmt::print("{} images, {} shadows of tips\n", calibration->views, calibration->shadows);
+  if (predicted > 0) fmt::print("left out  {} images with a predicted pose (corrected = 0)\n", predicted);
   fmt::print("residual  {:.2f} mm RMS on the board, {:.2f} mm before\n", 1e3 * calibration->rms_m,
              1e3 * calibration->rms_before_m);
   fmt::print("board     turned {:.3f}, {:.3f}, {:.3f} degrees, +- {:.3f}, {:.3f}, {:.3f}\n", board.turn_deg[0],

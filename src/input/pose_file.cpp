@@ -47,6 +47,7 @@ bool read_number(std::string_view text, Number& value) {
 struct Header {
   std::size_t cells = 0;
   std::optional<std::size_t> frame;
+  std::optional<std::size_t> corrected;
   std::array<std::size_t, kNames.size()> at{};
   std::optional<std::size_t> sigma_m;
   std::optional<std::size_t> sigma_deg;
@@ -93,6 +94,7 @@ class PoseReader {
       header.at[i] = *place;
     }
     header.frame = place_of("frame");
+    header.corrected = place_of("corrected");
     header.sigma_m = place_of("sigma_m");
     header.sigma_deg = place_of("sigma_deg");
     header_ = header;
@@ -117,6 +119,13 @@ class PoseReader {
             fmt::format("frame is {} after {}: expected rising numbers, each once", frame, *rows_.back().frame));
       }
       row.frame = frame;
+    }
+    if (header_->corrected && !cells[*header_->corrected].empty()) {
+      const std::string_view cell = cells[*header_->corrected];
+      if (cell != "0" && cell != "1") {
+        return wrong(fmt::format("corrected is '{}': expected 1 for a measured pose, 0 for a predicted one", cell));
+      }
+      row.corrected = cell == "1";
     }
     std::array<double, kNames.size()> v{};
     for (std::size_t i = 0; i < v.size(); ++i) {

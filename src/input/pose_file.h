@@ -18,12 +18,15 @@ struct PoseRow {
   geometry::Pose X = geometry::Pose::Identity();
   std::optional<double> sigma_m;    ///< of each coordinate, where the file has such a column.
   std::optional<double> sigma_rad;  ///< of the turn about each axis, likewise.
-  int line = 0;                     ///< in the file, from 1.
+  bool corrected =
+      true;      ///< false: no image corrected it, it was only carried on; so says a column `corrected` of 0 or 1.
+  int line = 0;  ///< in the file, from 1.
 };
 
 /// Reads poses from CSV with the columns `[frame,]tx,ty,tz,qw,qx,qy,qz`, named in the first line in any order; further columns are passed
 /// by, so that what `cgsr localize --csv` wrote can be read back. Metres and a unit quaternion. Columns `sigma_m` and `sigma_deg`
-/// may say how well a pose is known: standard deviations of each coordinate and about each axis. Empty lines and lines that begin with '#'
+/// may say how well a pose is known: standard deviations of each coordinate and about each axis; a column `corrected`, whether it was measured
+/// (1) or predicted (0). Empty lines and lines that begin with '#'
 /// are passed by.
 ///
 /// \return at least one row, frames rising; or the first thing that is wrong, with file, line, value and what was expected.

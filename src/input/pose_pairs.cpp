@@ -21,9 +21,19 @@ Result<PosePairs> read_pairs(const std::string& first_file, const std::string& s
     while (other != second->end() && *other->frame < *row.frame) ++other;
     if (other == second->end()) break;
     if (*other->frame != *row.frame) continue;
+    if (!row.corrected || !other->corrected) {
+      ++pairs.predicted;
+      continue;
+    }
     pairs.first.push_back(row.X);
     pairs.second.push_back(other->X);
     pairs.frames.push_back(*row.frame);
+  }
+  if (pairs.frames.empty() && pairs.predicted > 0) {
+    return fail(
+        fmt::format("{} and {} have {} frames in common, but corrected is 0 in each: expected measured poses, these "
+                    "are predictions",
+                    first_file, second_file, pairs.predicted));
   }
   if (pairs.frames.empty()) {
     return fail(fmt::format("{} and {} have no frame number in common", first_file, second_file));

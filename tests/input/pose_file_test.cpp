@@ -33,6 +33,8 @@ TEST(PoseFile, ReadsColumnsByTheirNames) {
   const Eigen::Quaterniond q(0.5, 0.5, -0.5, 0.5);
   EXPECT_LT((rows->front().X.linear() - q.toRotationMatrix()).norm(), 1e-12);
   EXPECT_EQ(rows->back().frame, 7);
+  EXPECT_TRUE(rows->front().corrected);
+  EXPECT_FALSE(rows->back().corrected);
 }
 
 TEST(PoseFile, NeedsNoFrameColumnAndNoLastLineFeed) {
@@ -82,6 +84,8 @@ TEST(PoseFileFault, NamesLineValueAndWhatWasExpected) {
   EXPECT_THAT(refusal(head + "0,1,2,3,1,1,0,0\n"), HasSubstr("has the length 1.41421"));
   EXPECT_THAT(refusal(head + "-1,1,2,3,1,0,0,0\n"), HasSubstr("frame is '-1'"));
   EXPECT_THAT(refusal(head + "1.5,1,2,3,1,0,0,0\n"), HasSubstr("frame is '1.5'"));
+  EXPECT_THAT(refusal("corrected,tx,ty,tz,qw,qx,qy,qz\nyes,0,0,1,1,0,0,0\n"),
+              HasSubstr("poses.csv:2: corrected is 'yes': expected 1"));
   EXPECT_THAT(refusal(head + "4,1,2,3,1,0,0,0\n4,1,2,3,1,0,0,0\n"),
               HasSubstr("poses.csv:3: frame is 4 after 4: expected rising numbers"));
 }
