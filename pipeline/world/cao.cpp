@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,7 +47,7 @@ std::optional<Number> number_in(std::string_view text) {
 
 class Reader {
  public:
-  explicit Reader(Soup& soup) : soup_(soup) {}
+  Reader(Soup& soup, const CaoLimits& limits) : soup_(soup), limits_(limits) {}
 
   Result<void> read(const std::filesystem::path& path, const geometry::Pose& X_WF) {
     std::error_code error;
@@ -57,8 +58,13 @@ class Reader {
     if (open_.size() >= kDeepest || ++files_ > kMostFiles)
       return fail(fmt::format("{}: files that load files, more than {} deep or {} in all", path.string(), kDeepest,
                               kMostFiles));
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (!error && bytes_ + size > limits_.bytes)
+      return fail(fmt::format("{}: {} bytes after {} of the files before it: expected at most {} in all", path.string(),
+                              size, bytes_, limits_.bytes));
     auto text = read_text(path);
     if (!text) return tl::unexpected(text.error());
+    bytes_ += text->size();
     open_.push_back(whole);
     auto good = File{*this, path, X_WF, *text}.run();
     open_.pop_back();
@@ -144,6 +150,16 @@ class Reader {
       return *value;
     }
 
+    // The same where the files that were read before hold some of what there may be in all.
+    Result<std::uint32_t> count_with(const char* what, std::size_t before, std::size_t most) {
+      auto n = count(what, std::numeric_limits<std::uint32_t>::max());
+      if (n && *n > most - before)
+        return wrong(before == 0 ? fmt::format("{} {}: expected at most {}", *n, what, most)
+                                 : fmt::format("{} {} after {} of the files before: expected at most {} in all", *n,
+                                               what, before, most));
+      return n;
+    }
+
     Result<void> run() {
       std::string_view content;
       if (!next_line(content) || content != "V1")
@@ -222,7 +238,7 @@ class Reader {
     }
 
     Result<void> read_points() {
-      auto n = count("points", kLargestCorners);
+      auto n = count_with("points", reader.soup_.points.size(), reader.limits_.points);
       if (!n) return tl::unexpected(n.error());
       points = *n;
       for (std::uint32_t i = 0; i < points; ++i) {
@@ -240,8 +256,9 @@ class Reader {
     }
 
     Result<void> read_lines() {
-      auto n = count("lines", kLargestCorners);
+      auto n = count_with("lines", reader.lines_, reader.limits_.lines);
       if (!n) return tl::unexpected(n.error());
+      reader.lines_ += *n;
       for (std::uint32_t i = 0; i < *n; ++i) {
         auto a = index("point", points);
         if (!a) return tl::unexpected(a.error());
@@ -341,16 +358,20 @@ class Reader {
   };
 
   Soup& soup_;
+  const CaoLimits& limits_;
   std::vector<std::filesystem::path> open_;
   std::size_t files_ = 0;
+  std::size_t lines_ = 0;
+  std::uintmax_t bytes_ = 0;
 };
 
 }  // namespace
 
-Result<Soup> read_cao(const std::filesystem::path& path) {
+Result<Soup> read_cao(const std::filesystem::path& path, const CaoLimits& limits) {
   Soup soup;
   soup.materials.push_back({"model", Eigen::Vector3f::Constant(0.5F), false});
-  if (auto good = Reader(soup).read(path, geometry::Pose::Identity()); !good) return tl::unexpected(good.error());
+  if (auto good = Reader(soup, limits).read(path, geometry::Pose::Identity()); !good)
+    return tl::unexpected(good.error());
   return soup;
 }
 

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/world/cao.h"
 #include "pipeline/world/compact.h"
 #include "tests/world/scratch.h"
 #include "tests/world/small_maps.h"
@@ -202,6 +203,30 @@ TEST(LoadMapFault, CaoInACircleIsRefused) {
   const auto map = load_map(scratch / "a.cao");
   ASSERT_FALSE(map);
   EXPECT_THAT(map.error().message, HasSubstr("it loads itself"));
+}
+
+// A few lines of text that load one file again and again ask for as much memory as they like.
+TEST(LoadMapFault, CaoFilesTogetherHoldNoMoreThanOneMay) {
+  const ScratchFolder scratch;
+  write(scratch / "small.cao", kCao);  // 5 points, 6 lines
+  std::string text = "V1\n";
+  for (int i = 0; i < 100; ++i) text += "load(\"small.cao\")\n";
+  text += "0\n0\n0\n0\n0\n0\n";
+  write(scratch / "many.cao", text);
+  const auto refused = [&](const CaoLimits& limits) {
+    const auto soup = read_cao(scratch / "many.cao", limits);
+    return soup ? "" : soup.error().message;
+  };
+  EXPECT_EQ(refused({}), "");
+  EXPECT_EQ(refused({.points = 500, .lines = 600}), "");
+  EXPECT_THAT(
+      refused({.points = 499}),
+      HasSubstr("small.cao:3: 5 points after 495 of the files before: expected at most 499 in all (loaded in "));
+  EXPECT_THAT(refused({.lines = 599}), HasSubstr("6 lines after 594 of the files before: expected at most 599 in all"));
+  const std::uintmax_t all = text.size() + 100 * std::string(kCao).size();
+  EXPECT_EQ(refused({.bytes = all}), "");
+  EXPECT_THAT(refused({.bytes = all - 1}), HasSubstr("of the files before it: expected at most"));
+  EXPECT_THAT(refused({.bytes = 10}), HasSubstr("many.cao: "));
 }
 
 TEST(LoadMapFault, WhatIsNoMapIsRefusedWithItsName) {
