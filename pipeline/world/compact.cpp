@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <ios>
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -223,6 +225,30 @@ Result<Map> map_in(const Head& head, std::string_view text) {
   return map;
 }
 
+std::string cause() {
+  return errno != 0 ? std::strerror(errno) : "unknown cause";
+}
+
+// Beside it first: what is there stays there until all of the new one is.
+Result<void> put_in_place(const std::filesystem::path& path, std::initializer_list<std::string_view> parts) {
+  std::filesystem::path beside = path;
+  beside += ".part";
+  const auto refused = [&](const std::string& what) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    return fail(fmt::format("{}: {}", path.string(), what));
+  };
+  errno = 0;
+  std::ofstream file(beside, std::ios::trunc | std::ios::binary);
+  for (const std::string_view part : parts) file.write(part.data(), static_cast<std::streamsize>(part.size()));
+  file.close();
+  if (!file) return refused(fmt::format("cannot be written: {}", cause()));
+  std::error_code error;
+  std::filesystem::rename(beside, path, error);
+  if (error) return refused(fmt::format("cannot be put in place: {}", error.message()));
+  return {};
+}
+
 }  // namespace
 
 Result<void> write_compact(const Map& map, const std::filesystem::path& path) {
@@ -237,12 +263,7 @@ Result<void> write_compact(const Map& map, const std::filesystem::path& path) {
   head.digest = digest_of(body);
   std::array<char, sizeof(Head)> first{};
   std::memcpy(first.data(), &head, sizeof(Head));
-  std::ofstream file(path, std::ios::binary);
-  file.write(first.data(), first.size());
-  file.write(body.data(), static_cast<std::streamsize>(body.size()));
-  file.close();
-  if (!file) return fail(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(errno)));
-  return {};
+  return put_in_place(path, {std::string_view(first.data(), first.size()), body});
 }
 
 Result<Map> read_compact(const std::filesystem::path& path) {

@@ -11,6 +11,7 @@ namespace cgsr::world {
 /// surfaces, edges and materials, little-endian.
 inline constexpr const char* kCompactExtension = ".cgsrmap";
 
+/// Writes it beside `path`, as NAME.part, and renames it there: nobody reads half of it, and where it cannot be written what was there remains.
 Result<void> write_compact(const Map& map, const std::filesystem::path& path);
 
 /// Errors: another file, another version, cut short or longer than it says, a checksum that does not fit, indices beyond what they point into,

@@ -286,6 +286,28 @@ TEST(CompactMap, ComesBackAsItWas) {
   EXPECT_EQ(back->materials[1].color, map.materials[1].color);
 }
 
+// A map is imported over itself, and the disk is full.
+TEST(CompactMapFault, WhatCannotBeWrittenLeavesTheOldOne) {
+  const ScratchFolder scratch;
+  ASSERT_TRUE(write_compact(small_map(), scratch / "a.cgsrmap"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "a.cgsrmap.part"));
+  const std::string before = text_of(scratch / "a.cgsrmap");
+  Map other = small_map();
+  other.materials[0].name = "another";
+  std::filesystem::create_symlink("/dev/full", scratch / "a.cgsrmap.part");
+  const auto full = write_compact(other, scratch / "a.cgsrmap");
+  ASSERT_FALSE(full);
+  EXPECT_THAT(full.error().message, HasSubstr("a.cgsrmap: cannot be written: No space left on device"));
+  EXPECT_EQ(text_of(scratch / "a.cgsrmap"), before);
+
+  std::filesystem::create_directory(scratch / "b.cgsrmap");
+  const auto folder = write_compact(other, scratch / "b.cgsrmap");
+  ASSERT_FALSE(folder);
+  EXPECT_THAT(folder.error().message, HasSubstr("b.cgsrmap: cannot be put in place"));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "b.cgsrmap.part"));
+  EXPECT_FALSE(write_compact(other, "/nowhere/at/all.cgsrmap"));
+}
+
 TEST(CompactMapFault, DamageIsNoticed) {
   const ScratchFolder scratch;
   ASSERT_TRUE(write_compact(small_map(), scratch / "a.cgsrmap"));
