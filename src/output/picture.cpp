@@ -6,7 +6,12 @@
 namespace cgsr::app {
 
 Result<cv::Mat> read_picture(const std::string& file, const geometry::Camera& camera, const std::string& camera_file) {
-  cv::Mat picture = cv::imread(file, cv::IMREAD_COLOR);
+  cv::Mat picture;
+  try {
+    picture = cv::imread(file, cv::IMREAD_COLOR);
+  } catch (const cv::Exception& wrong) {  // such as a header with a size beyond what it takes
+    return fail(fmt::format("{}: cannot be read as an image: {}", file, wrong.err));
+  }
   if (picture.empty()) return fail(fmt::format("{}: no image that can be read", file));
   if (picture.cols != camera.width_px || picture.rows != camera.height_px) {
     return fail(fmt::format("{}: {}x{} px, but {} is of a camera of {}x{}", file, picture.cols, picture.rows,
