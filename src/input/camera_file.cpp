@@ -8,10 +8,12 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "platform/parameters.h"
 #include "src/input/small_file.h"
 
 namespace cgsr::app {
@@ -21,6 +23,7 @@ constexpr std::size_t kLargest_bytes = 65536;
 constexpr double kZero = 1e-9;               // what counts as 0 in a camera matrix
 constexpr double kMostRatio = 2.0;           // of both focal lengths: pixels are nearly square
 constexpr double kWidestHalfTangent = 20.0;  // 174 degrees across
+constexpr double kReturns_px = 1e-3;         // a pixel's direction shows at the pixel again to so much
 
 /// Finds what it looks for in a YAML mapping and says where something is wrong.
 class YamlReader {
@@ -145,13 +148,16 @@ Result<void> read_pinhole(const YamlReader& yaml, geometry::Camera& camera) {
   return {};
 }
 
+std::array<Eigen::Vector2d, 4> corners_of(const geometry::Camera& camera) {
+  const double right = camera.width_px - 1;
+  const double bottom = camera.height_px - 1;
+  return {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0), Eigen::Vector2d(0, bottom), Eigen::Vector2d(right, bottom)};
+}
+
 /// Whether the lens maps the image one to one: what is farther out in the world is so in the image, along the way to each corner.
 bool folds(const geometry::Camera& camera) {
   constexpr int kSteps = 32;
-  const double right = camera.width_px - 1;
-  const double bottom = camera.height_px - 1;
-  for (const Eigen::Vector2d& corner :
-       {Eigen::Vector2d(0, 0), Eigen::Vector2d(right, 0), Eigen::Vector2d(0, bottom), Eigen::Vector2d(right, bottom)}) {
+  for (const Eigen::Vector2d& corner : corners_of(camera)) {
     const Eigen::Vector2d end((corner.x() - camera.cx_px) / camera.fx_px, (corner.y() - camera.cy_px) / camera.fy_px);
     if (end.norm() < kZero) continue;
     const Eigen::Vector2d out = end.normalized();
@@ -164,6 +170,37 @@ bool folds(const geometry::Camera& camera) {
     }
   }
   return false;
+}
+
+/// The first of a camera's numbers outside of the range that its description states; empty: none.
+class OutOfRange {
+ public:
+  void number(std::string_view name, int value, Range<int> range, std::string_view, std::string_view) {
+    note(name, value, range);
+  }
+  void number(std::string_view name, double value, Range<double> range, std::string_view, std::string_view) {
+    note(name, value, range);
+  }
+  [[nodiscard]] const std::string& words() const { return words_; }
+
+ private:
+  template <class Number>
+  void note(std::string_view name, Number value, Range<Number> range) {
+    if (!words_.empty() || (value >= range.minimum && value <= range.maximum)) return;
+    words_ = fmt::format("{} is {}: expected {}..{}", name, value, range.minimum, range.maximum);
+  }
+
+  std::string words_;
+};
+
+/// The image's corner whose direction the lens does not lead back to it; nothing: there is none.
+std::optional<Eigen::Vector2d> corner_that_is_lost(const geometry::Camera& camera) {
+  for (const Eigen::Vector2d& corner : corners_of(camera)) {
+    const Eigen::Vector2d bent = camera.distorted(camera.ideal_of(corner));
+    const Eigen::Vector2d back(camera.fx_px * bent.x() + camera.cx_px, camera.fy_px * bent.y() + camera.cy_px);
+    if (!((back - corner).norm() <= kReturns_px)) return corner;
+  }
+  return std::nullopt;
 }
 
 Result<void> read_lens(const YamlReader& yaml, geometry::Camera& camera) {
@@ -185,10 +222,21 @@ Result<void> read_lens(const YamlReader& yaml, geometry::Camera& camera) {
   camera.p1 = (*D)[2];
   camera.p2 = (*D)[3];
   camera.k3 = D->size() == 5 ? (*D)[4] : 0.0;
+  OutOfRange beyond;
+  geometry::Camera::describe(std::as_const(camera), beyond);
+  if (!beyond.words().empty()) {
+    return tl::unexpected(yaml.wrong(at, fmt::format("distortion_coefficients: {}", beyond.words())));
+  }
   if (folds(camera)) {
     return tl::unexpected(yaml.wrong(at, fmt::format("distortion_coefficients [{}] fold the image over itself before "
                                                      "its corners: expected a lens that shows every direction once",
                                                      fmt::join(*D, ", "))));
+  }
+  if (const auto lost = corner_that_is_lost(camera)) {
+    return tl::unexpected(
+        yaml.wrong(at, fmt::format("distortion_coefficients [{}] cannot be taken out again at the corner ({}, {}): "
+                                   "expected a lens that shows every direction once",
+                                   fmt::join(*D, ", "), lost->x(), lost->y())));
   }
   return {};
 }

@@ -125,6 +125,15 @@ TEST(CameraFileFault, NamesLineValueAndWhatWasExpected) {
                            "cols: 8\n  data: [-0.075, 0.045, 0.0006, -0.0004, 0.0, 0, 0, 0]")),
               HasSubstr("distortion_coefficients has 8 numbers"));
   EXPECT_THAT(refusal(with("-0.075", "-3")), HasSubstr("fold the image over itself"));
+  EXPECT_EQ(refusal(with("-0.075", "1e300")),
+            "camera.yaml:12: distortion_coefficients: k1 is 1e+300: expected -10..10");
+  EXPECT_THAT(refusal(with("0.045", "-1e3")), HasSubstr("k2 is -1000: expected -100..100"));
+  EXPECT_THAT(refusal(with("0.0006", "1.5")), HasSubstr("p1 is 1.5: expected -1..1"));
+  EXPECT_THAT(refusal(with("-0.0004", "-2")), HasSubstr("p2 is -2: expected -1..1"));
+  EXPECT_THAT(refusal(with("-0.0004, 0.0", "-0.0004, 1e4")), HasSubstr("k3 is 10000: expected -1000..1000"));
+  EXPECT_THAT(refusal(with("-0.075, 0.045, 0.0006, -0.0004, 0.0", "0.15, 1.44, 0.72, 0.046, 0.0")),
+              HasSubstr("cannot be taken out again at the corner (0, 0): expected a lens that shows every direction"));
+  EXPECT_EQ(refusal(with("-0.075, 0.045, 0.0006, -0.0004, 0.0", "-0.38, 0.21, 0.002, -0.001, -0.07")), "");
   EXPECT_THAT(refusal(with("camera_name: head", "image_width: 320")),
               HasSubstr("camera.yaml:3: 'image_width' is there a second time"));
 }
