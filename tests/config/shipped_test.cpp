@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "platform/config/canonical.h"
 #include "src/config/load.h"
+#include "src/config/localization.h"
 
 namespace cgsr::config {
 namespace {
@@ -38,6 +40,17 @@ TEST(ShippedRobots, AreSlowNeverBackwardsAndKeptIn) {
     EXPECT_LE(robot->motion.feedback_timeout_s, 0.100) << file;
     EXPECT_TRUE(robot->motion.keep_in.enabled) << file;
   }
+}
+
+TEST(ShippedLocalization, AreGoodAndWithoutAFileItIsTheFreeOne) {
+  const std::filesystem::path folder = CGSR_SOURCE_DIR "/config/localization";
+  const auto free = load_localization(folder / "free.toml");
+  ASSERT_TRUE(free) << free.error().message;
+  EXPECT_EQ(canonical(*free), canonical(*load_localization({})));
+  EXPECT_FALSE(free->tracker.floor);
+  const auto floor = load_localization(folder / "floor.toml");
+  ASSERT_TRUE(floor) << floor.error().message;
+  EXPECT_TRUE(floor->tracker.floor);
 }
 
 }  // namespace
