@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -41,8 +42,13 @@ Result<ImageInput> ImageInput::open(const InputOptions& options) {
 ImageInput::Next ImageInput::next() {
   auto image = camera_->next_image(MonoTime::max());
   if (image) return {std::move(*image), {}, false};
-  if (image.error() == hal::CaptureFailure::kCorrupt) return {{}, camera_->last_problem(), false};
-  return {{}, camera_->last_problem(), true};
+  std::string problem = camera_->last_problem();
+  if (image.error() == hal::CaptureFailure::kCorrupt) {
+    told_ = problem;
+    return {{}, std::move(problem), false};
+  }
+  if (problem == told_) problem.clear();
+  return {{}, std::move(problem), true};
 }
 
 Result<std::pair<int, int>> parse_size(const std::string& text) {

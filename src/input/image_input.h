@@ -27,7 +27,7 @@ class ImageInput {
   [[nodiscard]] const hal::CameraMode& mode() const { return mode_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return camera_->notes(); }
 
-  /// What next() came back with: an image, a refused image (why stands in `problem`), or the end.
+  /// What next() came back with: an image, a refused image (why stands in `problem`), or the end (`problem`: what ended it early, if anything).
   struct Next {
     ImageLease image;
     std::string problem;
@@ -41,6 +41,7 @@ class ImageInput {
 
   std::unique_ptr<hal::ReplayCamera> camera_;
   hal::CameraMode mode_;
+  std::string told_;  ///< the problem of the last refused image: the camera remembers it until there is another.
 };
 
 /// Reads `640x480`. \return an error that repeats the text.

@@ -1,15 +1,189 @@
-// cgsr localize on images that others made.
+// cgsr localize on rendered images and on those that others made.
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <vector>
 
+#include <fmt/core.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "pipeline/world/compact.h"
+#include "pipeline/world/load.h"
+#include "src/input/pose_file.h"
 #include "tests/app/program.h"
 
 namespace cgsr::app::testing {
 namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kImages = 3;
+constexpr const char* kColumns = "frame,tx,ty,tz,qw,qx,qy,qz\n";
+
+/// Three images of the room with the poster, from a camera on a robot that drives 2.2 cm from one to the next.
+class LocalizeFilm : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    shared_ = std::make_unique<ScratchFolder>();
+    const auto exported = run_cgsr({"sim", "export", "--world", kWorld, "--errors", "0", "--output", file("room")});
+    ASSERT_EQ(exported.exit_code, 0) << exported.errors;
+    std::filesystem::create_directories(file("film"));
+    for (int i = 0; i < kImages; ++i) {
+      const auto drawn = run_cgsr({"sim", "render", "--world", kWorld, "--pose", pose_as_csv(true_pose(i)), "--seed",
+                                   fmt::format("{}", i + 1), "--output", file(fmt::format("film/{}.png", i))});
+      ASSERT_EQ(drawn.exit_code, 0) << drawn.errors;
+    }
+    std::string priors = kColumns;
+    std::string odometry = kColumns;
+    geometry::Pose X_OO = geometry::Pose::Identity();
+    for (int i = 0; i < kImages; ++i) {
+      geometry::Pose prior = true_pose(i);
+      prior.translation() += Eigen::Vector3d(0.06, -0.05, 0.03);
+      priors += fmt::format("{},{}\n", i, pose_as_csv(prior));
+      X_OO.translation() = true_pose(i).translation() - true_pose(0).translation();
+      odometry += fmt::format("{},{}\n", i, pose_as_csv(X_OO));
+    }
+    write_text(file("priors.csv"), priors);
+    write_text(file("odometry.csv"), odometry);
+    geometry::Pose start = true_pose(0);
+    start.translation() += Eigen::Vector3d(0.03, -0.03, 0.01);
+    write_text(file("pose.csv"), fmt::format("{}\n{}\n", kPoseColumns, pose_as_csv(start)));
+    geometry::Pose X_RC = true_pose(0);
+    X_RC.translation() = Eigen::Vector3d(0.0, 0.0, 1.2);
+    write_text(file("mount.csv"), fmt::format("{}\n{}\n", kPoseColumns, pose_as_csv(X_RC)));
+  }
+  static void TearDownTestSuite() { shared_.reset(); }
+
+  static std::string file(const std::string& name) { return *shared_ / name; }
+
+  /// Looks along x, 6 degrees down.
+  static geometry::Pose true_pose(int image) {
+    geometry::Pose X_WC = geometry::Pose::Identity();
+    X_WC.linear() =
+        Eigen::Quaterniond(0.47314679, -0.52548275, 0.52548275, -0.47314679).normalized().toRotationMatrix();
+    X_WC.translation() = Eigen::Vector3d(0.8 + 0.02 * image, -0.3 + 0.01 * image, 1.2);
+    return X_WC;
+  }
+
+  /// With the room's own map and camera, unless `more` names others.
+  static Outcome localize(const std::vector<std::string>& more, const std::string& map = file("room/map.obj"),
+                          const std::string& camera = file("room/calibrated/camera.yaml"),
+                          const std::string& film = file("film")) {
+    std::vector<std::string> words{"localize", "--map", map, "--camera", camera, "--input", film};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_cgsr(words);
+  }
+
+  /// All corrected, and right.
+  static void expect_right(const std::string& csv) {
+    const auto rows = read_poses(csv);
+    ASSERT_TRUE(rows) << rows.error().message;
+    ASSERT_EQ(rows->size(), static_cast<std::size_t>(kImages));
+    for (int i = 0; i < kImages; ++i) {
+      const PoseRow& row = (*rows)[static_cast<std::size_t>(i)];
+      EXPECT_EQ(row.frame, i);
+      EXPECT_TRUE(row.corrected) << i;
+      EXPECT_LT((row.X.translation() - true_pose(i).translation()).norm(), 0.03) << i;
+      EXPECT_LT(geometry::vector_of(row.X.linear().transpose() * true_pose(i).linear()).norm(), 0.01) << i;
+    }
+  }
+
+  static constexpr const char* kWorld = CGSR_SOURCE_DIR "/config/worlds/occlusion.toml";
+  static constexpr const char* kFloor = CGSR_SOURCE_DIR "/config/localization/floor.toml";
+  static inline std::unique_ptr<ScratchFolder> shared_;
+};
+
+TEST_F(LocalizeFilm, CorrectsEachImageFromItsPrior) {
+  const auto run = localize({"--priors", file("priors.csv"), "--csv", file("each.csv"), "--json", file("each.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("3 images, pose corrected in 3"));
+  expect_right(file("each.csv"));
+  EXPECT_EQ(nlohmann::json::parse(read_text(file("each.json"))).at("corrected"), kImages);
+}
+
+TEST_F(LocalizeFilm, FollowsFromThePoseOfTheFirst) {
+  const auto run = localize({"--pose", file("pose.csv"), "--csv", file("hand.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  expect_right(file("hand.csv"));
+  const auto driven = localize({"--pose", file("pose.csv"), "--odometry", file("odometry.csv"), "--mount",
+                                file("mount.csv"), "--config", kFloor, "--csv", file("floor.csv")});
+  ASSERT_EQ(driven.exit_code, 0) << driven.errors;
+  expect_right(file("floor.csv"));
+}
+
+TEST_F(LocalizeFilm, ADamagedImageIsToldOnceAndItsNumberIsPassedOver) {
+  std::filesystem::copy(file("film"), file("damaged"));
+  write_text(file("damaged/1.png"), "no image");
+  const auto run = localize({"--priors", file("priors.csv"), "--csv", file("damaged.csv")}, file("room/map.obj"),
+                            file("room/calibrated/camera.yaml"), file("damaged"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  const std::size_t told = run.errors.find("1.png");
+  ASSERT_NE(told, std::string::npos) << run.errors;
+  EXPECT_EQ(run.errors.find("1.png", told + 5), std::string::npos) << run.errors;
+  const auto rows = read_poses(file("damaged.csv"));
+  ASSERT_TRUE(rows) << rows.error().message;
+  ASSERT_EQ(rows->size(), 2U);
+  EXPECT_EQ(rows->back().frame, 2);
+}
+
+TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
+  write_text(file("small.yaml"),
+             "image_width: 320\nimage_height: 240\ncamera_name: small\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+             "  data: [300.0, 0.0, 159.5, 0.0, 300.0, 119.5, 0.0, 0.0, 1.0]\ndistortion_model: plumb_bob\n"
+             "distortion_coefficients:\n  rows: 1\n  cols: 5\n  data: [0.0, 0.0, 0.0, 0.0, 0.0]\n");
+  auto bare = world::load_map(file("room/map.obj"));
+  ASSERT_TRUE(bare) << bare.error().message;
+  bare->edges.clear();
+  ASSERT_TRUE(world::write_compact(*bare, file("bare.cgsrmap")));
+  write_text(file("first.csv"), fmt::format("{}0,{}\n", kColumns, pose_as_csv(true_pose(0))));
+  write_text(file("wrong.toml"), "[tracker]\nflor = true\n");
+
+  const std::string map = file("room/map.obj");
+  const std::string camera = file("room/calibrated/camera.yaml");
+  const std::vector<std::string> pose{"--pose", file("pose.csv")};
+  struct Case {
+    std::vector<std::string> words;
+    std::string map;
+    std::string camera;
+    std::string cause;
+  };
+  const std::vector<Case> cases = {
+      {{"--pose", file("none.csv")}, map, camera, "none.csv: cannot be read"},
+      {{"--priors", file("none.csv")}, map, camera, "none.csv: cannot be read"},
+      {{"--pose", file("priors.csv")}, map, camera, "priors.csv:3: holds 3 poses: expected one"},
+      {{"--priors", file("first.csv")}, map, camera, "first.csv: holds no pose for image 1"},
+      {{"--pose", file("pose.csv"), "--odometry", file("first.csv")},
+       map,
+       camera,
+       "first.csv: holds no pose for image 1"},
+      {pose, map, file("small.yaml"), "film: images of 640 x 480 px: expected 320 x 240, the size of the camera in "},
+      {pose, map, file("none.yaml"), "none.yaml: cannot be read"},
+      {pose, file("none.obj"), camera, "none.obj: No such file"},
+      {pose, file("bare.cgsrmap"), camera, "bare.cgsrmap: holds no edge to look for"},
+      {{"--pose", file("pose.csv"), "--config", kFloor},
+       map,
+       camera,
+       "floor.toml: tracker.floor = true needs --mount: where the camera is on the robot"},
+      {{"--pose", file("pose.csv"), "--mount", file("none.csv")}, map, camera, "none.csv: cannot be read"},
+      {{"--pose", file("pose.csv"), "--config", file("wrong.toml")}, map, camera, "wrong.toml:2: tracker.flor"},
+      {{"--pose", file("pose.csv"), "--csv", "/nowhere/at/all.csv"},
+       map,
+       camera,
+       "/nowhere/at/all.csv: cannot be written"},
+  };
+  for (const Case& wrong : cases) {
+    const auto run = localize(wrong.words, wrong.map, wrong.camera);
+    EXPECT_EQ(run.exit_code, 1) << wrong.cause;
+    EXPECT_THAT(run.errors, HasSubstr(wrong.cause));
+  }
+  const auto neither = localize({});
+  EXPECT_EQ(neither.exit_code, 2);
+  EXPECT_THAT(neither.errors, HasSubstr("give either --pose or --priors"));
+  EXPECT_EQ(localize({"--pose", file("pose.csv"), "--priors", file("priors.csv")}).exit_code, 2);
+}
 
 // A cube on a table: the map knows nothing of what fills most of the image. The camera and the first pose are those that came with it.
 TEST(LocalizeCommand, FollowsTheRecordedCube) {
