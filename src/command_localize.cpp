@@ -62,7 +62,8 @@ void add_localize_command(CLI::App& app, int& exit_code) {
                        ->excludes(priors);
   command
       ->add_option("--mount", options->mount,
-                   "CSV with the camera's pose on the robot; without it the odometry is the camera's own")
+                   "the camera's pose on the robot: CSV, or the TOML that cgsr calibrate mount writes; without it the "
+                   "odometry is the camera's own")
       ->excludes(priors);
   command->add_option("--method", options->method, "instead of the configuration's")
       ->check(CLI::IsMember({"glcorrect", "stronger", "paper"}));

@@ -79,8 +79,10 @@ bool Alternation::is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& m
 }
 
 void Alternation::look_if_far(const geometry::Pose& X_WC) {
-  view_.project(X_WC, camera_);
-  if (!is_far(X_WC, motion_metric(X_WC))) return;
+  if (parameters_.method == Method::kGlCorrect) {
+    view_.project(X_WC, camera_);
+    if (!is_far(X_WC, motion_metric(X_WC))) return;
+  }
   look(X_WC);
   view_.project(X_WC, camera_);
 }
@@ -269,7 +271,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     X_WC = solution.X_WC;
     if (moved < parameters_.settled_px && rules.radius_px <= least) break;
     look_now = options.look_again && is_far(X_WC, metric);
-    if (!options.whole_matching) rules.radius_px = std::max(least, rules.radius_px * kShrink);
+    rules.radius_px = std::max(least, rules.radius_px * kShrink);
   }
   const geometry::Vector6d off = geometry::step_between(belief.prior.X_WC, estimate.solution.X_WC);
   estimate.prior_chi2 = static_cast<float>(off.dot(belief.information * off));

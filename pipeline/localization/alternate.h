@@ -56,7 +56,6 @@ struct AlternateOptions {
   double robust = SolverOptions{}.robust;  ///< likewise there.
   bool look_first = true;                  ///< false: the pieces of the last look are good enough.
   bool look_again = true;                  ///< when the pose moved far.
-  bool whole_matching = false;             ///< radius stays (the paper's).
   bool by_part = false;                    ///< for the gate: where in the image they agree.
   bool measured_noise =
       false;  ///< the pose out of the noise that the matches show; its covariance stays the stated one's.
@@ -76,7 +75,8 @@ class Alternation {
 
   /// Draws the expectation from a pose; project() and view() go with it.
   void look(const geometry::Pose& X_WC);
-  /// Projects what is known to be visible, and looks anew where the pose is farther than look_again_px from where that was seen.
+  /// glCorrect projects what is known to be visible, and looks anew where the pose is farther than look_again_px from where that was seen; the
+  /// dissertation's methods look anew.
   void look_if_far(const geometry::Pose& X_WC);
   void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }
   [[nodiscard]] const ExpectedView& view() const { return view_; }

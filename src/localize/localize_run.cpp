@@ -1,6 +1,7 @@
 #include "src/localize/localize_run.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "platform/count_marks.h"
 #include "platform/work_budget.h"
 #include "src/input/camera_file.h"
+#include "src/input/robot_calibration.h"
 #include "src/plug_in/expectation.h"
 
 namespace cgsr::app {
@@ -85,7 +87,8 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
   if (!start) return tl::unexpected(start.error());
   geometry::Pose X_RC = geometry::Pose::Identity();
   if (!options.mount.empty()) {
-    const auto mount = read_pose(options.mount);
+    const auto mount = std::filesystem::path(options.mount).extension() == ".toml" ? read_mount(options.mount)
+                                                                                   : read_pose(options.mount);
     if (!mount) return tl::unexpected(mount.error());
     X_RC = *mount;
   } else if (state_->config.tracker.floor) {

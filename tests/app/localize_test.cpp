@@ -114,6 +114,20 @@ TEST_F(LocalizeFilm, FollowsFromThePoseOfTheFirst) {
   expect_right(file("floor.csv"));
 }
 
+// The file that cgsr calibrate mount writes says it too, and what is visible may be drawn through OpenGL.
+TEST_F(LocalizeFilm, FollowsWithARobotsFileAndThroughOpenGl) {
+  const Eigen::Quaterniond turn(true_pose(0).linear());
+  write_text(file("robot.toml"),
+             fmt::format("[mount]\nposition_m = [0.0, 0.0, 1.2]\nquaternion_wxyz = [{}, {}, {}, {}]\n", turn.w(),
+                         turn.x(), turn.y(), turn.z()));
+  const std::string opengl = read_text(kFloor) + "\n[localizer]\nexpectation = \"osmesa\"\n";
+  write_text(file("opengl.toml"), opengl);
+  const auto run = localize({"--pose", file("pose.csv"), "--odometry", file("odometry.csv"), "--mount",
+                             file("robot.toml"), "--config", file("opengl.toml"), "--csv", file("opengl.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  expect_right(file("opengl.csv"));
+}
+
 TEST_F(LocalizeFilm, ADamagedImageIsToldOnceAndItsNumberIsPassedOver) {
   std::filesystem::copy(file("film"), file("damaged"));
   write_text(file("damaged/1.png"), "no image");
@@ -168,6 +182,7 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
        camera,
        "floor.toml: tracker.floor = true needs --mount: where the camera is on the robot"},
       {{"--pose", file("pose.csv"), "--mount", file("none.csv")}, map, camera, "none.csv: cannot be read"},
+      {{"--pose", file("pose.csv"), "--mount", file("wrong.toml")}, map, camera, "wrong.toml: has no section [mount]"},
       {{"--pose", file("pose.csv"), "--config", file("wrong.toml")}, map, camera, "wrong.toml:2: tracker.flor"},
       {{"--pose", file("pose.csv"), "--csv", "/nowhere/at/all.csv"},
        map,
