@@ -3,14 +3,16 @@
 
 option(CGSR_PRECOMPILE "precompile others' headers" OFF)
 
-# cgsr_precompile(): every target below the current folder that is compiled like the precompiled header, without -fPIC and in the same C++.
+# cgsr_precompile(): every target below the current folder that is compiled in the same C++ reads the precompiled header that fits it: of a
+# test, of a part of a plug-in (-fPIC), or of anything else.
 function(cgsr_precompile)
-  foreach(for IN ITEMS precompiled precompiled_test)
+  foreach(for IN ITEMS precompiled precompiled_pic precompiled_test)
     add_library(cgsr_${for} STATIC ${CMAKE_SOURCE_DIR}/cmake/precompiled.cpp)
     target_include_directories(cgsr_${for} PRIVATE ${OpenCV_INCLUDE_DIRS})
-    target_link_libraries(cgsr_${for} PRIVATE tl::expected fmt::fmt Eigen3::Eigen nlohmann_json::nlohmann_json)
+    target_link_libraries(cgsr_${for} PRIVATE tl::expected fmt::fmt Eigen3::Eigen)
     target_precompile_headers(cgsr_${for} PRIVATE ${CMAKE_SOURCE_DIR}/cmake/precompiled.h)
   endforeach()
+  set_target_properties(cgsr_precompiled_pic PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(cgsr_precompiled_test PRIVATE GTest::gmock)
   target_precompile_headers(cgsr_precompiled_test PRIVATE <gmock/gmock.h> <gtest/gtest.h>)
   cgsr_targets_below(${CMAKE_SOURCE_DIR} targets)
@@ -19,14 +21,18 @@ function(cgsr_precompile)
     get_target_property(pic ${target} POSITION_INDEPENDENT_CODE)
     get_target_property(standard ${target} CXX_STANDARD)
     set(from cgsr_precompiled)
-    if(target MATCHES "^test_")
+    if(pic)
+      set(from cgsr_precompiled_pic)
+    elseif(target MATCHES "^test_")
       set(from cgsr_precompiled_test)
     endif()
-    if(NOT pic AND standard EQUAL CMAKE_CXX_STANDARD AND type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT target MATCHES "^cgsr_precompiled")
+    if(standard EQUAL CMAKE_CXX_STANDARD AND type MATCHES "STATIC_LIBRARY|EXECUTABLE" AND NOT target MATCHES "^cgsr_precompiled")
       target_link_libraries(${target} PRIVATE fmt::fmt)  # whose definitions the precompiled header saw
       target_precompile_headers(${target} REUSE_FROM ${from})
-      # g++ 12 warns of its own std::string once its headers are not read in place. The release without this warns where it should.
-      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
+      # g++ 12 warns of its own std::string once its headers are not read in place. The release without this warns where it should. And it need
+      # not tidy up its memory as often as it does.
+      target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread
+                             "SHELL:--param ggc-min-heapsize=600000")
     endif()
   endforeach()
 endfunction()
