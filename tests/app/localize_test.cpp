@@ -120,12 +120,22 @@ TEST_F(LocalizeFilm, FollowsWithARobotsFileAndThroughOpenGl) {
   write_text(file("robot.toml"),
              fmt::format("[mount]\nposition_m = [0.0, 0.0, 1.2]\nquaternion_wxyz = [{}, {}, {}, {}]\n", turn.w(),
                          turn.x(), turn.y(), turn.z()));
-  const std::string opengl = read_text(kFloor) + "\n[localizer]\nexpectation = \"osmesa\"\n";
-  write_text(file("opengl.toml"), opengl);
+  write_text(file("opengl.toml"), read_text(kFloor) + "\n[localizer]\nexpectation = \"osmesa\"\n");
   const auto run = localize({"--pose", file("pose.csv"), "--odometry", file("odometry.csv"), "--mount",
                              file("robot.toml"), "--config", file("opengl.toml"), "--csv", file("opengl.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   expect_right(file("opengl.csv"));
+}
+
+TEST_F(LocalizeFilm, WithoutOpenGlsLibraryBesideTheProgramItSaysSo) {
+  std::filesystem::copy_file(built_cgsr(), file("cgsr"));
+  write_text(file("without.toml"), "[localizer]\nexpectation = \"osmesa\"\n");
+  const auto run = run_cgsr({"localize", "--map", file("room/map.obj"), "--camera", file("room/calibrated/camera.yaml"),
+                             "--input", file("film"), "--pose", file("pose.csv"), "--config", file("without.toml")},
+                            file("cgsr"));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.errors, HasSubstr("localizer.expectation = \"osmesa\" cannot be loaded"));
+  EXPECT_THAT(run.errors, HasSubstr("cgsr-opengl.so"));
 }
 
 TEST_F(LocalizeFilm, ADamagedImageIsToldOnceAndItsNumberIsPassedOver) {

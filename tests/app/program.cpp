@@ -19,12 +19,12 @@ extern char** environ;
 
 namespace cgsr::app::testing {
 
-RunningCgsr::RunningCgsr(const std::vector<std::string>& arguments) {
+RunningCgsr::RunningCgsr(const std::vector<std::string>& arguments, const std::string& program) {
   std::string name = (std::filesystem::temp_directory_path() / "cgsr-test-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   folder_ = name;
 
-  std::vector<std::string> words{CGSR_PROGRAM};
+  std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -38,7 +38,7 @@ RunningCgsr::RunningCgsr(const std::vector<std::string>& arguments) {
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   open_as(STDOUT_FILENO, "output");
   open_as(STDERR_FILENO, "errors");
-  const int failed = posix_spawn(&process_, CGSR_PROGRAM, &files, nullptr, argv.data(), environ);
+  const int failed = posix_spawn(&process_, program.c_str(), &files, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&files);
   if (failed != 0) throw std::runtime_error("cgsr could not be started");
 }
@@ -67,8 +67,12 @@ Outcome RunningCgsr::wait() {
   return {code, read_text(folder_ / "output"), read_text(folder_ / "errors")};
 }
 
-Outcome run_cgsr(const std::vector<std::string>& arguments) {
-  return RunningCgsr(arguments).wait();
+std::string built_cgsr() {
+  return CGSR_PROGRAM;
+}
+
+Outcome run_cgsr(const std::vector<std::string>& arguments, const std::string& program) {
+  return RunningCgsr(arguments, program).wait();
 }
 
 ScratchFolder::ScratchFolder() {

@@ -15,13 +15,17 @@ struct Outcome {
   std::string errors;  ///< standard error.
 };
 
+/// Where the cgsr that was built lies.
+std::string built_cgsr();
+
 /// Runs cgsr with `arguments` and waits for it. Neither of its streams is a terminal.
-Outcome run_cgsr(const std::vector<std::string>& arguments);
+/// \param program  the one that was built, unless a copy is meant.
+Outcome run_cgsr(const std::vector<std::string>& arguments, const std::string& program = built_cgsr());
 
 /// Starts cgsr and returns at once.
 class RunningCgsr {
  public:
-  explicit RunningCgsr(const std::vector<std::string>& arguments);
+  explicit RunningCgsr(const std::vector<std::string>& arguments, const std::string& program = built_cgsr());
   ~RunningCgsr();
   RunningCgsr(const RunningCgsr&) = delete;
   RunningCgsr& operator=(const RunningCgsr&) = delete;
