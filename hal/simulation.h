@@ -81,7 +81,7 @@ struct PlanPiece {
 
 /// The world from above, lowest pieces first, without what hangs above a person's head.
 struct Plan {
-  double x_min_m = 0.0, x_max_m = 0.0, y_min_m = 0.0, y_max_m = 0.0;
+  double min_x_m = 0.0, max_x_m = 0.0, min_y_m = 0.0, max_y_m = 0.0;
   std::vector<PlanPiece> pieces;
   double view_angle_rad = 0.0;  ///< horizontal field of view of the camera.
 };

@@ -27,8 +27,8 @@ double way_to_edge(double gap, double edge_rad, double travel_rad, double spread
 }  // namespace
 
 hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits) {
-  return {std::clamp(goal.forward_mps, -limits.backward_limit_mps, limits.forward_limit_mps),
-          std::clamp(goal.left_radps, -limits.turn_limit_radps, limits.turn_limit_radps)};
+  return {std::clamp(goal.forward_mps, -limits.max_backward_mps, limits.max_forward_mps),
+          std::clamp(goal.left_radps, -limits.max_turn_radps, limits.max_turn_radps)};
 }
 
 double speed_within_area(double forward_mps, const hal::Odometry& odometry, double age_s,
@@ -38,15 +38,15 @@ double speed_within_area(double forward_mps, const hal::Odometry& odometry, doub
 
   const double wanted = std::abs(forward_mps);
   const double present = std::copysign(1.0, forward_mps) * odometry.velocity.forward_mps;
-  const double deceleration = limits.deceleration_limit_mps2;
+  const double deceleration = limits.max_deceleration_mps2;
   const double unbraked_s = age_s + limits.reaction_s;
   const double until_standing_s = unbraked_s + std::max(wanted, present) / deceleration;
-  const double spread = std::min(kPi, limits.turn_limit_radps * until_standing_s);
+  const double spread = std::min(kPi, limits.max_turn_radps * until_standing_s);
   const double travel_rad = odometry.heading_rad + (forward_mps < 0.0 ? kPi : 0.0);
-  const double way = std::min({way_to_edge(area.x_max_m - odometry.x_m, 0.0, travel_rad, spread),
-                               way_to_edge(area.y_max_m - odometry.y_m, kPi / 2.0, travel_rad, spread),
-                               way_to_edge(odometry.x_m - area.x_min_m, kPi, travel_rad, spread),
-                               way_to_edge(odometry.y_m - area.y_min_m, -kPi / 2.0, travel_rad, spread)});
+  const double way = std::min({way_to_edge(area.max_x_m - odometry.x_m, 0.0, travel_rad, spread),
+                               way_to_edge(area.max_y_m - odometry.y_m, kPi / 2.0, travel_rad, spread),
+                               way_to_edge(odometry.x_m - area.min_x_m, kPi, travel_rad, spread),
+                               way_to_edge(odometry.y_m - area.min_y_m, -kPi / 2.0, travel_rad, spread)});
 
   // Both inequalities, solved for v.
   const double at = deceleration * unbraked_s;

@@ -148,7 +148,7 @@ void MotionLoop::disarm_if_due(MonoTime now, StopCause standing) {
   if (!held_since_) held_since_ = now;
   if (latches(standing)) {
     disarm(standing);
-  } else if (now - *held_since_ > seconds(parameters_.longest_hold_s)) {
+  } else if (now - *held_since_ > seconds(parameters_.max_hold_s)) {
     disarm(StopCause::kHeldTooLong);
   }
 }
@@ -192,11 +192,11 @@ hal::Twist MotionLoop::towards_goal(MonoTime now, MotionStatus& status) const {
   const hal::Twist goal = clamp(goal_->twist, parameters_);
   const double elapsed_s = to_seconds(elapsed_);
   hal::Twist next;
-  next.forward_mps = behavior::ramp(commanded_.forward_mps, goal.forward_mps, parameters_.acceleration_limit_mps2,
-                                    parameters_.deceleration_limit_mps2, elapsed_s);
+  next.forward_mps = behavior::ramp(commanded_.forward_mps, goal.forward_mps, parameters_.max_acceleration_mps2,
+                                    parameters_.max_deceleration_mps2, elapsed_s);
   if (goal_->halt && goal.forward_mps == 0.0) next.forward_mps = 0.0;
-  next.left_radps = behavior::ramp(commanded_.left_radps, goal.left_radps, parameters_.turn_acceleration_limit_radps2,
-                                   parameters_.turn_acceleration_limit_radps2, elapsed_s);
+  next.left_radps = behavior::ramp(commanded_.left_radps, goal.left_radps, parameters_.max_turn_acceleration_radps2,
+                                   parameters_.max_turn_acceleration_radps2, elapsed_s);
 
   // What is said now holds until the next beat.
   const double age_s = to_seconds(now - odometry_.stamp + kMotionPeriod);

@@ -23,7 +23,7 @@ enum class StopCause : std::uint8_t {
   kImagesLate,     ///< holds. Fewer than 90 % of the last 30 images were in time.
   kGoalStale,      ///< holds. The newest goal's image is older than goal_timeout_s.
   kNoGoal,         ///< holds. No goal has come yet.
-  kHeldTooLong,    ///< only as what latched: a holding cause lasted longer than longest_hold_s.
+  kHeldTooLong,    ///< only as what latched: a holding cause lasted longer than max_hold_s.
   kLoopLate,       ///< only as a refusal to arm: a step of the last second came late, or a second has not passed yet.
   kDisarmed,       ///< nobody armed the robot, or somebody disarmed it.
 };

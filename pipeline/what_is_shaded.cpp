@@ -54,14 +54,14 @@ ShadeSight WhatIsShaded::look(const geometry::Pose& X_WC, const geometry::Matrix
     return sight;
   }
   const double lamp_sigma_m = largest_sigma(lamp->covariance);
-  if (!(lamp_sigma_m <= parameters_.lamp_sigma_most_m)) {
+  if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) {
     sight.status = ShadeStatus::kLampUnsure;
     return sight;
   }
   sight.status = ShadeStatus::kMasked;
   // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way.
   Eigen::Vector3d way = lamp->p_WL - p_WL_kept_;
-  if (!(way.norm() <= parameters_.lamp_kept_m)) {
+  if (!(way.norm() <= parameters_.max_lamp_shift_m)) {
     p_WL_kept_ = lamp->p_WL;
     way.setZero();
   }

@@ -17,15 +17,15 @@ namespace cgsr {
 
 /// Section [shade] of a robot's file.
 struct ShadeStageParameters {
-  double lamp_sigma_most_m = 0.3;
-  double lamp_kept_m = 0.01;
+  double max_lamp_sigma_m = 0.3;
+  double max_lamp_shift_m = 0.01;
   render::ShadeParameters masks;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("lamp_sigma_most_m", self.lamp_sigma_most_m, {0.001, 10.0}, "m",
+    visit.number("max_lamp_sigma_m", self.max_lamp_sigma_m, {0.001, 10.0}, "m",
                  "a lamp that is known no better makes no masks");
-    visit.number("lamp_kept_m", self.lamp_kept_m, {0.0, 1.0}, "m",
+    visit.number("max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
                  "so far the lamp's estimate may wander before its silhouettes are made anew");
     visit.section("masks", self.masks, "How shaded regions are found (5.2)");
   }

@@ -51,7 +51,7 @@ void add_light_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--pose", options->pose,
       "CSV with the robot's pose for each image: lamps are kept in the world's frame as well; columns sigma_m and "
-      "sigma_deg may say how well it is known, at the least as [lamp].pose_sigma_m and _deg");
+      "sigma_deg may say how well it is known, at the least as [lamp].min_pose_sigma_m and _deg");
   command->add_option(
       "--csv", options->csv,
       "write a row for each lamp of each image: robot frame, or the world's where --pose says where the robot was");

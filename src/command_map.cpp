@@ -158,7 +158,7 @@ int run_picture(const Options& options) {
   render::RasterParameters parameters;
   parameters.width = 640;
   parameters.height = 480;
-  parameters.surfaces_most = parameters.triangles_most = parameters.edges_most = parameters.looked_at_most = 10'000'000;
+  parameters.max_surfaces = parameters.max_triangles = parameters.max_edges = parameters.max_visited = 10'000'000;
   render::DepthRaster raster(*map, parameters);
   std::vector<render::VisiblePiece> pieces;
   pieces.reserve(map->edges.size() + 10'000);

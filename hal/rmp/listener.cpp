@@ -38,7 +38,7 @@ DriveFault reported_fault(const RmpReport& report) {
 Listener::Listener(const RmpParameters& parameters)
     : parameters_(parameters),
       age_(seconds(parameters.feedback_warn_s)),
-      odometer_(parameters.scales, parameters.plausible_mps, parameters.plausible_radps) {}
+      odometer_(parameters.scales, parameters.max_plausible_mps, parameters.max_plausible_radps) {}
 
 void Listener::take(const CanFrame& frame, MonoTime stamp) {
   const auto message = decode(frame);
@@ -85,8 +85,8 @@ bool Listener::stale(MonoTime now) {
 void Listener::take_motion(const Motion& motion, MonoTime stamp) {
   const auto velocity = to_twist(motion, parameters_.scales);
   const int fastest_wheel = std::max(std::abs(motion.left), std::abs(motion.right));
-  if (fastest_wheel > parameters_.plausible_mps * parameters_.scales.velocity_per_mps ||
-      std::abs(velocity.left_radps) > parameters_.plausible_radps) {
+  if (fastest_wheel > parameters_.max_plausible_mps * parameters_.scales.velocity_per_mps ||
+      std::abs(velocity.left_radps) > parameters_.max_plausible_radps) {
     ++counters_.implausible;
     return;
   }

@@ -20,10 +20,10 @@ struct RmpParameters {
   double hold_s = 0.150;
   double feedback_warn_s = 0.030;
   double feedback_timeout_s = 0.100;
-  int sets_to_be_ready = 10;
-  int refusals_to_give_up = 3;
-  double plausible_mps = 5.0;
-  double plausible_radps = 8.0;
+  int min_ready_sets = 10;
+  int max_refusals = 3;
+  double max_plausible_mps = 5.0;
+  double max_plausible_radps = 8.0;
   RmpScales scales;
 
   template <class Self, class Visitor>
@@ -36,13 +36,13 @@ struct RmpParameters {
                  "age of a needed message that is counted as late, and the longest way between two sets in a row");
     visit.number("feedback_timeout_s", self.feedback_timeout_s, {0.02, 0.3}, "s",
                  "age of a needed message past which the robot is stopped");
-    visit.number("sets_to_be_ready", self.sets_to_be_ready, {1, 1000}, "sets",
+    visit.number("min_ready_sets", self.min_ready_sets, {1, 1000}, "sets",
                  "whole sets in a row, 10 ms each, before the base counts as ready, at the start and after a fault");
-    visit.number("refusals_to_give_up", self.refusals_to_give_up, {1, 100}, "commands",
+    visit.number("max_refusals", self.max_refusals, {1, 100}, "commands",
                  "commands in a row that a full queue refuses before the link counts as lost");
-    visit.number("plausible_mps", self.plausible_mps, {1.0, 20.0}, "m/s",
+    visit.number("max_plausible_mps", self.max_plausible_mps, {1.0, 20.0}, "m/s",
                  "a wheel reported as faster is a damaged message");
-    visit.number("plausible_radps", self.plausible_radps, {1.0, 50.0}, "rad/s", "likewise a turn");
+    visit.number("max_plausible_radps", self.max_plausible_radps, {1.0, 50.0}, "rad/s", "likewise a turn");
     visit.section("scales", self.scales, "Counts per unit on the base's bus");
   }
 };

@@ -129,14 +129,14 @@ DriveFault RmpDrive::standing_fault(MonoTime now) {
   const auto recent = [now](const std::optional<MonoTime>& stamp) { return stamp && now - *stamp < kIntruderStays; };
   if (bus_->state() == CanState::kBusOff) return DriveFault::kBusOff;
   if (bus_->state() == CanState::kGone) return DriveFault::kLinkLost;
-  if (speech_.full_in_a_row >= parameters_.refusals_to_give_up) return DriveFault::kLinkLost;
+  if (speech_.full_in_a_row >= parameters_.max_refusals) return DriveFault::kLinkLost;
   if (recent(listener_.foreign_command_at())) return DriveFault::kSecondCommander;
   if (recent(listener_.powered_off_at())) return DriveFault::kPoweredOff;
   if (stale) return DriveFault::kFeedbackLost;
   if (!listener_.complete()) return DriveFault::kStarting;
   if (const auto fault = reported_fault(listener_.report()); fault != DriveFault::kNone) return fault;
   if (const auto mode = wanted_mode(); mode && *mode != listener_.report().power.mode) return DriveFault::kMotorsOff;
-  return listener_.sets_in_a_row() < parameters_.sets_to_be_ready ? DriveFault::kStarting : DriveFault::kNone;
+  return listener_.sets_in_a_row() < parameters_.min_ready_sets ? DriveFault::kStarting : DriveFault::kNone;
 }
 
 DriveFailure RmpDrive::failure() const {

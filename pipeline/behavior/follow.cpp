@@ -104,10 +104,10 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
 
   const Velocity target = wanted(decision);
   // A long gap between images must not become a jump of speed.
-  const double elapsed_s = std::min(to_seconds(elapsed), parameters_.stale_after_s);
-  const double turn_ramp = parameters_.turn_acceleration_limit_radps2;
-  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.acceleration_limit_mps2,
-                           parameters_.deceleration_limit_mps2, elapsed_s);
+  const double elapsed_s = std::min(to_seconds(elapsed), parameters_.max_box_age_s);
+  const double turn_ramp = parameters_.max_turn_acceleration_radps2;
+  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.max_acceleration_mps2,
+                           parameters_.max_deceleration_mps2, elapsed_s);
   goal_.left_radps = ramp(goal_.left_radps, target.left_radps, turn_ramp, turn_ramp, elapsed_s);
   decision.goal = goal_;
   return decision;
@@ -116,7 +116,7 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
 FollowReason Follow::judge(const Sighting& sighting) const {
   if (!sighting.found) return FollowReason::kNotFound;
   if (!sensible(sighting)) return FollowReason::kBadInput;
-  if (sighting.age > seconds(parameters_.stale_after_s)) return FollowReason::kStale;
+  if (sighting.age > seconds(parameters_.max_box_age_s)) return FollowReason::kStale;
   return FollowReason::kSeen;
 }
 
@@ -135,7 +135,7 @@ FollowState Follow::state_when_unseen(Duration elapsed) {
   unseen_for_ += elapsed;
   const double unseen_s = to_seconds(unseen_for_);
   if (unseen_s <= parameters_.search_after_s) return FollowState::kStanding;
-  if (unseen_s <= parameters_.search_after_s + parameters_.search_for_s) return FollowState::kSearching;
+  if (unseen_s <= parameters_.search_after_s + parameters_.max_search_s) return FollowState::kSearching;
   return FollowState::kLost;
 }
 
@@ -148,13 +148,13 @@ Velocity Follow::wanted(const FollowDecision& decision) const {
 
   const double bearing = beyond_band(decision.bearing_rad, parameters_.bearing_band_rad);
   velocity.left_radps =
-      std::clamp(parameters_.turn_per_s * bearing, -parameters_.turn_limit_radps, parameters_.turn_limit_radps);
+      std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps);
 
   if (decision.distance_m <= 0.0) return velocity;  // not known: only turn
   const double error_m = beyond_band(decision.distance_m - parameters_.distance_m, parameters_.distance_band_m);
-  const double facing = std::max(0.0, 1.0 - std::abs(decision.bearing_rad) / parameters_.turn_first_rad);
-  velocity.forward_mps = std::clamp(parameters_.approach_per_s * error_m * facing, -parameters_.backward_limit_mps,
-                                    parameters_.forward_limit_mps);
+  const double facing = std::max(0.0, 1.0 - std::abs(decision.bearing_rad) / parameters_.max_driving_bearing_rad);
+  velocity.forward_mps = std::clamp(parameters_.approach_per_s * error_m * facing, -parameters_.max_backward_mps,
+                                    parameters_.max_forward_mps);
   return velocity;
 }
 

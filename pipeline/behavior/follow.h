@@ -32,7 +32,7 @@ enum class FollowState : std::uint8_t {
   kWaiting,    ///< never seen yet: stands.
   kFollowing,  ///< seen.
   kStanding,   ///< lost: comes to a stop and stands for search_after_s.
-  kSearching,  ///< turns on the spot towards the side where it was last seen, for search_for_s.
+  kSearching,  ///< turns on the spot towards the side where it was last seen, for max_search_s.
   kLost,       ///< given up: stands until it is seen again.
 };
 
@@ -40,7 +40,7 @@ enum class FollowReason : std::uint8_t {
   kSeen,
   kSeenAtEdge,  ///< the box is cut by the image's edge in both directions: its size says nothing, the robot only turns.
   kNotFound,
-  kStale,     ///< found, but in an image older than stale_after_s.
+  kStale,     ///< found, but in an image older than max_box_age_s.
   kBadInput,  ///< box, camera or image size make no sense; treated as not found.
 };
 
@@ -62,10 +62,10 @@ struct FollowDecision {
 ///     bearing   b = atan((cx - u) / fx)                            u: column of the box's centre
 ///     distance  d = d_ref * size_ref / size                        size: root of the box's area; a side alone when the
 ///     image cuts the other turn      w = turn_per_s * b forward   v = approach_per_s * (d - distance_m) * max(0, 1 -
-///     |b| / turn_first_rad)
+///     |b| / max_driving_bearing_rad)
 ///
 /// b and d - distance_m go through their dead bands, v and w through their limits and ramps. Never moves backwards
-/// unless backward_limit_mps says so.
+/// unless max_backward_mps says so.
 class Follow {
  public:
   /// \param learned  with learned_distance_m > 0 the reference for the distance; without either, the first box seen

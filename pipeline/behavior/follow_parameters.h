@@ -10,18 +10,18 @@ struct FollowParameters {
   double learned_distance_m = 0.0;
   double distance_band_m = 0.15;
   double approach_per_s = 0.5;
-  double forward_limit_mps = 0.3;
-  double backward_limit_mps = 0.0;
-  double acceleration_limit_mps2 = 0.3;
-  double deceleration_limit_mps2 = 0.6;
+  double max_forward_mps = 0.3;
+  double max_backward_mps = 0.0;
+  double max_acceleration_mps2 = 0.3;
+  double max_deceleration_mps2 = 0.6;
   double bearing_band_rad = 0.03;
   double turn_per_s = 1.2;
-  double turn_limit_radps = 0.8;
-  double turn_acceleration_limit_radps2 = 1.5;
-  double turn_first_rad = 0.5;
-  double stale_after_s = 0.3;
+  double max_turn_radps = 0.8;
+  double max_turn_acceleration_radps2 = 1.5;
+  double max_driving_bearing_rad = 0.5;
+  double max_box_age_s = 0.3;
   double search_after_s = 1.0;
-  double search_for_s = 20.0;
+  double max_search_s = 20.0;
   double search_turn_radps = 0.4;
 
   template <class Self, class Visitor>
@@ -33,25 +33,23 @@ struct FollowParameters {
     visit.number("distance_band_m", self.distance_band_m, {0.0, 1.0}, "m",
                  "an error of the distance this small is none");
     visit.number("approach_per_s", self.approach_per_s, {0.0, 3.0}, "1/s", "speed for each metre of error");
-    visit.number("forward_limit_mps", self.forward_limit_mps, {0.0, 1.5}, "m/s", "fastest approach");
-    visit.number("backward_limit_mps", self.backward_limit_mps, {0.0, 0.5}, "m/s",
+    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "fastest approach");
+    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
                  "fastest retreat from an object that comes too near; the robot is blind backwards");
-    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.05, 3.0}, "m/s²",
-                 "steepest gain of speed");
-    visit.number("deceleration_limit_mps2", self.deceleration_limit_mps2, {0.05, 3.0}, "m/s²",
-                 "steepest loss of speed");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest gain of speed");
+    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²", "steepest loss of speed");
     visit.number("bearing_band_rad", self.bearing_band_rad, {0.0, 0.5}, "rad",
                  "a bearing this small is straight ahead");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("turn_limit_radps", self.turn_limit_radps, {0.0, 2.0}, "rad/s", "fastest turn towards the object");
-    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 10.0}, "rad/s²",
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn towards the object");
+    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
                  "steepest change of the turn rate");
-    visit.number("turn_first_rad", self.turn_first_rad, {0.05, 3.2}, "rad",
+    visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "bearing at which the robot only turns; the speed falls linearly on the way there");
-    visit.number("stale_after_s", self.stale_after_s, {0.05, 2.0}, "s",
+    visit.number("max_box_age_s", self.max_box_age_s, {0.05, 2.0}, "s",
                  "a box from an older image counts as not found");
     visit.number("search_after_s", self.search_after_s, {0.0, 10.0}, "s", "how long to stand before the search starts");
-    visit.number("search_for_s", self.search_for_s, {0.0, 120.0}, "s",
+    visit.number("max_search_s", self.max_search_s, {0.0, 120.0}, "s",
                  "how long to search before the object is given up");
     visit.number("search_turn_radps", self.search_turn_radps, {0.0, 1.0}, "rad/s", "turn rate of the search");
   }

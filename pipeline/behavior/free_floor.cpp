@@ -34,7 +34,8 @@ FreeFloor::FreeFloor(const world::Map& map, const FreeFloorParameters& parameter
 void FreeFloor::block(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const float lowest = std::min({a.z(), b.z(), c.z()});
   const float tallest = std::max({a.z(), b.z(), c.z()});
-  if (static_cast<double>(tallest) < parameters_.lowest_m || static_cast<double>(lowest) > parameters_.tallest_m)
+  if (static_cast<double>(tallest) < parameters_.min_obstacle_height_m ||
+      static_cast<double>(lowest) > parameters_.max_obstacle_height_m)
     return;
   // Points of the triangle, no further apart than half a cell.
   const double longest = static_cast<double>(std::max({(b - a).norm(), (c - a).norm(), (c - b).norm()}));
@@ -45,7 +46,7 @@ void FreeFloor::block(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const 
       const auto v = static_cast<float>(k) / static_cast<float>(steps);
       const Eigen::Vector3f p = a + u * (b - a) + v * (c - a);
       const auto z = static_cast<double>(p.z());
-      if (z < parameters_.lowest_m || z > parameters_.tallest_m) continue;
+      if (z < parameters_.min_obstacle_height_m || z > parameters_.max_obstacle_height_m) continue;
       const auto column = static_cast<int>((static_cast<double>(p.x()) - x_min_m_) / parameters_.cell_m);
       const auto row = static_cast<int>((static_cast<double>(p.y()) - y_min_m_) / parameters_.cell_m);
       if (column < 0 || row < 0 || column >= columns_ || row >= rows_) continue;
@@ -57,8 +58,9 @@ void FreeFloor::block(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const 
 /// Keeps the robot's middle clear of what is blocked.
 void FreeFloor::grow() {
   const std::vector<std::uint8_t> things = blocked_;
-  const auto reach = static_cast<int>(std::ceil(parameters_.clearance_m / parameters_.cell_m));
-  const double reach2 = parameters_.clearance_m * parameters_.clearance_m / (parameters_.cell_m * parameters_.cell_m);
+  const auto reach = static_cast<int>(std::ceil(parameters_.min_clearance_m / parameters_.cell_m));
+  const double reach2 =
+      parameters_.min_clearance_m * parameters_.min_clearance_m / (parameters_.cell_m * parameters_.cell_m);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       if (things[static_cast<std::size_t>(row * columns_ + column)] == 0) continue;

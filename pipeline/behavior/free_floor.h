@@ -9,16 +9,19 @@
 namespace cgsr::behavior {
 
 struct FreeFloorParameters {
-  double clearance_m = 0.40;
-  double lowest_m = 0.03;
-  double tallest_m = 1.35;
+  double min_clearance_m = 0.40;
+  double min_obstacle_height_m = 0.03;
+  double max_obstacle_height_m = 1.35;
   double cell_m = 0.05;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("clearance_m", self.clearance_m, {0.0, 3.0}, "m", "from the robot's middle to whatever the map holds");
-    visit.number("lowest_m", self.lowest_m, {0.0, 1.0}, "m", "what is lower can be driven over");
-    visit.number("tallest_m", self.tallest_m, {0.1, 5.0}, "m", "what is higher is driven under");
+    visit.number("min_clearance_m", self.min_clearance_m, {0.0, 3.0}, "m",
+                 "from the robot's middle to whatever the map holds");
+    visit.number("min_obstacle_height_m", self.min_obstacle_height_m, {0.0, 1.0}, "m",
+                 "what is lower can be driven over");
+    visit.number("max_obstacle_height_m", self.max_obstacle_height_m, {0.1, 5.0}, "m",
+                 "what is higher is driven under");
     visit.number("cell_m", self.cell_m, {0.01, 0.5}, "m", "of the grid in which that is worked out");
   }
 };

@@ -19,10 +19,10 @@ struct RouteParameters {
   double forward_mps = 0.35;
   double approach_per_s = 0.8;
   double turn_per_s = 1.2;
-  double turn_limit_radps = 0.6;
-  double turn_first_rad = 0.4;
-  double acceleration_limit_mps2 = 0.4;
-  double turn_acceleration_limit_radps2 = 1.5;
+  double max_turn_radps = 0.6;
+  double max_driving_bearing_rad = 0.4;
+  double max_acceleration_mps2 = 0.4;
+  double max_turn_acceleration_radps2 = 1.5;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -34,12 +34,11 @@ struct RouteParameters {
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
                  "speed for each metre that is left, where that is less");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("turn_limit_radps", self.turn_limit_radps, {0.0, 2.0}, "rad/s", "fastest turn");
-    visit.number("turn_first_rad", self.turn_first_rad, {0.05, 3.2}, "rad",
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn");
+    visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "bearing at which the robot only turns; the speed falls linearly on the way there");
-    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.05, 3.0}, "m/s²",
-                 "steepest change of speed");
-    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 10.0}, "rad/s²",
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest change of speed");
+    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
                  "steepest change of the turn rate");
   }
 };

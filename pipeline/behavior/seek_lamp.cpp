@@ -140,10 +140,10 @@ SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, D
   }
 
   SeekDecision decision;
-  if (moves(state_) && without_pose_s_ > parameters_.pose_lost_s) go_on(SeekState::kStopped, SeekReason::kPoseLost);
+  if (moves(state_) && without_pose_s_ > parameters_.max_pose_loss_s) go_on(SeekState::kStopped, SeekReason::kPoseLost);
   const bool needs_board = state_ == SeekState::kWaiting || state_ == SeekState::kExploring ||
                            state_ == SeekState::kApproaching || state_ == SeekState::kLocating;
-  if (needs_board && unreadable_s_ > parameters_.probes_lost_s) {
+  if (needs_board && unreadable_s_ > parameters_.max_probes_loss_s) {
     go_on(SeekState::kAmbient, SeekReason::kBoardUnreadable);
   }
   const Velocity target = moves(state_) && !here.known ? Velocity{} : wanted(here, lamp);
@@ -151,10 +151,10 @@ SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, D
   if (decision.halt) {
     goal_ = {};
   } else {
-    goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.acceleration_limit_mps2,
-                             parameters_.acceleration_limit_mps2, elapsed_s_);
-    goal_.left_radps = ramp(goal_.left_radps, target.left_radps, parameters_.turn_acceleration_limit_radps2,
-                            parameters_.turn_acceleration_limit_radps2, elapsed_s_);
+    goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.max_acceleration_mps2,
+                             parameters_.max_acceleration_mps2, elapsed_s_);
+    goal_.left_radps = ramp(goal_.left_radps, target.left_radps, parameters_.max_turn_acceleration_radps2,
+                            parameters_.max_turn_acceleration_radps2, elapsed_s_);
   }
   decision.goal = goal_;
   decision.state = state_;
@@ -177,7 +177,7 @@ Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
         go_on(SeekState::kAmbient, SeekReason::kNoBoard);
       } else if (here.known) {
         begin(here, lamp);
-      } else if (without_pose_s_ > parameters_.pose_lost_s) {
+      } else if (without_pose_s_ > parameters_.max_pose_loss_s) {
         go_on(SeekState::kAmbient, SeekReason::kNoPose);
       }
       return {};
@@ -242,7 +242,7 @@ Velocity SeekLamp::explore(const FloorBelief& here, const LampBelief& lamp) {
   if (turned_rad_ < kTurn) return {0.0, parameters_.explore_turn_radps};
   if (visits_ < kMostVisited) visited_[static_cast<std::size_t>(visits_)] = {here.x_m, here.y_m};
   ++visits_;
-  if (visits_ >= std::min(parameters_.explore_places, kMostVisited)) {
+  if (visits_ >= std::min(parameters_.max_explore_places, kMostVisited)) {
     go_on(SeekState::kAmbient, SeekReason::kNoShadow);
     return {};
   }
@@ -289,8 +289,9 @@ Velocity SeekLamp::approach(const FloorBelief& here, const LampBelief& /*lamp*/)
     middle_rad_ = here.heading_rad;
     return Velocity{};
   };
-  const double good_m = std::max(parameters_.nearest_m,
-                                 (lamp_z_m_ - board_.height_m) * std::tan(parameters_.good_angle_deg * kRadPerDeg));
+  const double good_m =
+      std::max(parameters_.min_distance_m,
+               (lamp_z_m_ - board_.height_m) * std::tan(parameters_.max_locate_angle_deg * kRadPerDeg));
   if (board_to_lamp_m(here) <= good_m) return measure(SeekReason::kSteepEnough);
   const double left_m = way_between(here, lamp_) - board_.forward_m - good_m;
   const double heading = here.heading_rad + bearing_of(here, lamp_);
@@ -305,12 +306,12 @@ Velocity SeekLamp::locate(const FloorBelief& here, const LampBelief& lamp) {
     go_on(SeekState::kExploring, SeekReason::kLampGone);
     return {};
   }
-  const bool good = lamp.known && lamp.sigma_m <= parameters_.good_sigma_m;
-  if (good && in_state_s_ >= parameters_.locate_least_s) {
+  const bool good = lamp.known && lamp.sigma_m <= parameters_.max_located_sigma_m;
+  if (good && in_state_s_ >= parameters_.min_locate_s) {
     measured(lamp, SeekReason::kLampKnown);
     return {};
   }
-  if (in_state_s_ >= parameters_.locate_most_s) {
+  if (in_state_s_ >= parameters_.max_locate_s) {
     measured(lamp, SeekReason::kTimeIsUp);
     return {};
   }
@@ -357,7 +358,7 @@ void SeekLamp::choose_way_back(const FloorBelief& here) {
   double way_there = 0.0;
   away_rad_ = straight;
   for (int i = -kHeadings / 2; i <= kHeadings / 2; ++i) {
-    const double aside = 2.0 * i * parameters_.back_off_aside_deg * kRadPerDeg / kHeadings;
+    const double aside = 2.0 * i * parameters_.max_back_off_turn_deg * kRadPerDeg / kHeadings;
     const double way = way_m(here, straight + aside, parameters_.back_off_m);
     const double score = way * std::cos(0.5 * aside);
     if (score <= best) continue;
@@ -393,7 +394,7 @@ Velocity SeekLamp::back_off(const FloorBelief& here, const LampBelief& /*lamp*/)
 Velocity SeekLamp::shade(const LampBelief& lamp) {
   if (lamp.masked) {
     go_on(SeekState::kTracking, SeekReason::kMasked);
-  } else if (in_state_s_ >= parameters_.shade_most_s) {
+  } else if (in_state_s_ >= parameters_.max_shade_wait_s) {
     go_on(SeekState::kTracking, SeekReason::kNoMask);
   }
   return {};
@@ -407,7 +408,7 @@ bool SeekLamp::in_area(double x_m, double y_m) const {
   const double dy = y_m - start_.y_m;
   const double x = c * dx + s * dy;
   const double y = c * dy - s * dx;
-  return x >= area_.x_min_m && x <= area_.x_max_m && y >= area_.y_min_m && y <= area_.y_max_m;
+  return x >= area_.min_x_m && x <= area_.max_x_m && y >= area_.min_y_m && y <= area_.max_y_m;
 }
 
 double SeekLamp::way_m(const FloorBelief& here, double heading_rad, double longest_m) const {
@@ -423,17 +424,17 @@ double SeekLamp::way_m(const FloorBelief& here, double heading_rad, double longe
 
 Velocity SeekLamp::towards(const FloorBelief& here, const Place& place) const {
   const double bearing = bearing_of(here, place);
-  const double ahead = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.turn_first_rad);
+  const double ahead = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.max_driving_bearing_rad);
   const double way = way_between(here, place);
   return {std::min(parameters_.forward_mps, parameters_.approach_per_s * way) * ahead,
-          std::clamp(parameters_.turn_per_s * bearing, -parameters_.turn_limit_radps, parameters_.turn_limit_radps)};
+          std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps)};
 }
 
 Velocity SeekLamp::facing(const FloorBelief& here, double heading_rad, bool& done) const {
   const double off = std::remainder(heading_rad - here.heading_rad, kTurn);
   done = std::abs(off) <= parameters_.facing_deg * kRadPerDeg;
   // Slower than this the base would not turn at all.
-  const double rate = std::clamp(parameters_.turn_per_s * std::abs(off), 0.08, parameters_.turn_limit_radps);
+  const double rate = std::clamp(parameters_.turn_per_s * std::abs(off), 0.08, parameters_.max_turn_radps);
   return {0.0, std::copysign(rate, off)};
 }
 

@@ -19,27 +19,27 @@ namespace cgsr::behavior {
 struct SeekLampParameters {
   double explore_turn_radps = 0.5;
   double explore_step_m = 1.2;
-  int explore_places = 5;
-  double good_angle_deg = 42.0;
-  double nearest_m = 0.6;
-  double locate_least_s = 3.0;
-  double locate_most_s = 10.0;
+  int max_explore_places = 5;
+  double max_locate_angle_deg = 42.0;
+  double min_distance_m = 0.6;
+  double min_locate_s = 3.0;
+  double max_locate_s = 10.0;
   double locate_turn_deg = 25.0;
-  double good_sigma_m = 0.05;
+  double max_located_sigma_m = 0.05;
   double back_off_m = 5.0;
-  double back_off_aside_deg = 50.0;
-  double shade_most_s = 4.0;
+  double max_back_off_turn_deg = 50.0;
+  double max_shade_wait_s = 4.0;
   double forward_mps = 0.35;
   double approach_per_s = 0.8;
   double turn_per_s = 1.2;
-  double turn_limit_radps = 0.5;
-  double turn_first_rad = 0.35;
-  double acceleration_limit_mps2 = 0.3;
-  double turn_acceleration_limit_radps2 = 1.0;
+  double max_turn_radps = 0.5;
+  double max_driving_bearing_rad = 0.35;
+  double max_acceleration_mps2 = 0.3;
+  double max_turn_acceleration_radps2 = 1.0;
   double reached_m = 0.10;
   double facing_deg = 2.0;
-  double pose_lost_s = 2.0;
-  double probes_lost_s = 4.0;
+  double max_pose_loss_s = 2.0;
+  double max_probes_loss_s = 4.0;
   FreeFloorParameters floor;
 
   template <class Self, class Visitor>
@@ -47,35 +47,37 @@ struct SeekLampParameters {
     visit.number("explore_turn_radps", self.explore_turn_radps, {0.05, 2.0}, "rad/s",
                  "turn rate while shadows are looked for, once around at every place");
     visit.number("explore_step_m", self.explore_step_m, {0.1, 10.0}, "m", "from one place to the next");
-    visit.number("explore_places", self.explore_places, {1, 100}, "",
+    visit.number("max_explore_places", self.max_explore_places, {1, 100}, "",
                  "places without a shadow after which only ambient light is reckoned with");
-    visit.number("good_angle_deg", self.good_angle_deg, {5.0, 80.0}, "deg",
+    visit.number("max_locate_angle_deg", self.max_locate_angle_deg, {5.0, 80.0}, "deg",
                  "a lamp further from the vertical is gone nearer to before it is measured");
-    visit.number("nearest_m", self.nearest_m, {0.0, 10.0}, "m", "but never nearer than this, along the floor");
-    visit.number("locate_least_s", self.locate_least_s, {0.0, 60.0}, "s", "how long the lamp is measured at the least");
-    visit.number("locate_most_s", self.locate_most_s, {0.1, 120.0}, "s", "and at most");
+    visit.number("min_distance_m", self.min_distance_m, {0.0, 10.0}, "m",
+                 "but never nearer than this, along the floor");
+    visit.number("min_locate_s", self.min_locate_s, {0.0, 60.0}, "s", "how long the lamp is measured at the least");
+    visit.number("max_locate_s", self.max_locate_s, {0.1, 120.0}, "s", "and at most");
     visit.number("locate_turn_deg", self.locate_turn_deg, {0.0, 90.0}, "deg",
                  "to each side meanwhile: turning tells the lamp from errors of the board");
-    visit.number("good_sigma_m", self.good_sigma_m, {0.001, 1.0}, "m", "a lamp that is known so well is measured");
+    visit.number("max_located_sigma_m", self.max_located_sigma_m, {0.001, 1.0}, "m",
+                 "a lamp that is known so well is measured");
     visit.number("back_off_m", self.back_off_m, {0.0, 50.0}, "m", "away from the lamp, as far as there is a free way");
-    visit.number("back_off_aside_deg", self.back_off_aside_deg, {0.0, 180.0}, "deg",
+    visit.number("max_back_off_turn_deg", self.max_back_off_turn_deg, {0.0, 180.0}, "deg",
                  "how far from straight away the way may lead where it is free for longer");
-    visit.number("shade_most_s", self.shade_most_s, {0.1, 60.0}, "s", "how long masks are waited for");
+    visit.number("max_shade_wait_s", self.max_shade_wait_s, {0.1, 60.0}, "s", "how long masks are waited for");
     visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "speed on the way");
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
                  "speed for each metre that is left, where that is less");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("turn_limit_radps", self.turn_limit_radps, {0.05, 2.0}, "rad/s", "fastest turn");
-    visit.number("turn_first_rad", self.turn_first_rad, {0.05, 3.2}, "rad",
+    visit.number("max_turn_radps", self.max_turn_radps, {0.05, 2.0}, "rad/s", "fastest turn");
+    visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "bearing at which the robot only turns; the speed falls linearly on the way there");
-    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.05, 3.0}, "m/s²",
-                 "steepest change of speed");
-    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 10.0}, "rad/s²",
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest change of speed");
+    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
                  "steepest change of the turn rate");
     visit.number("reached_m", self.reached_m, {0.01, 1.0}, "m", "so near a place counts as reached");
     visit.number("facing_deg", self.facing_deg, {0.1, 30.0}, "deg", "so near a heading counts as turned to");
-    visit.number("pose_lost_s", self.pose_lost_s, {0.1, 60.0}, "s", "without a pose on its way, after which it stops");
-    visit.number("probes_lost_s", self.probes_lost_s, {0.1, 60.0}, "s",
+    visit.number("max_pose_loss_s", self.max_pose_loss_s, {0.1, 60.0}, "s",
+                 "without a pose on its way, after which it stops");
+    visit.number("max_probes_loss_s", self.max_probes_loss_s, {0.1, 60.0}, "s",
                  "without a board that can be read, after which only ambient light is reckoned with");
     visit.section("floor", self.floor, "Which floor is free, by the map");
   }
@@ -105,10 +107,10 @@ struct BoardPlace {
 /// The rectangle that the robot may not leave, seen from where and whither it looked at the start.
 struct KeptArea {
   bool enabled = false;
-  double x_min_m = 0.0;
-  double x_max_m = 0.0;
-  double y_min_m = 0.0;
-  double y_max_m = 0.0;
+  double min_x_m = 0.0;
+  double max_x_m = 0.0;
+  double min_y_m = 0.0;
+  double max_y_m = 0.0;
 };
 
 enum class SeekState : std::uint8_t {

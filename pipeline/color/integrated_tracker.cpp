@@ -137,7 +137,7 @@ ImageView cut(const ImageView& image, const Part& part) {
 }  // namespace
 
 SizeRange projected_size(const BallParameters& ball, double focal_px) {
-  return {ball.diameter_m * focal_px / ball.farthest_m, ball.diameter_m * focal_px / ball.nearest_m};
+  return {ball.diameter_m * focal_px / ball.max_distance_m, ball.diameter_m * focal_px / ball.min_distance_m};
 }
 
 struct IntegratedTracker::State {
@@ -205,13 +205,13 @@ struct IntegratedTracker::State {
 
 bool IntegratedTracker::State::is_found(const CircleFit& fit) const {
   const BallParameters& p = parameters.ball;
-  return fit.agreement >= p.found_agreement && fit.inside >= p.least_inside && fit.around <= p.most_around;
+  return fit.agreement >= p.min_found_agreement && fit.inside >= p.min_inside && fit.around <= p.max_around;
 }
 
 bool IntegratedTracker::State::is_kept(const CircleFit& fit) const {
   const BallParameters& p = parameters.ball;
-  return fit.agreement >= p.kept_agreement && fit.inside >= kStillOwn * p.least_inside &&
-         fit.around <= p.most_around + kMoreAround;
+  return fit.agreement >= p.min_kept_agreement && fit.inside >= kStillOwn * p.min_inside &&
+         fit.around <= p.max_around + kMoreAround;
 }
 
 /// \return whether the image is one that can be searched.
@@ -285,7 +285,7 @@ IntegratedTracker::State::Answer IntegratedTracker::State::find(BallPixels pixel
       const CircleFit fit = fit_circle(pixels, x, y, sizes);
       if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
       const Likeness likeness = likeness_of(pixels, fit.circle);
-      if (likeness.divergence <= parameters.found_divergence) best = {fit, likeness};
+      if (likeness.divergence <= parameters.max_found_divergence) best = {fit, likeness};
     }
   }
   return best;
@@ -351,7 +351,7 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
     answer.fit = follow(pixels, sizes);
     if (is_kept(answer.fit)) answer.likeness = likeness_of(pixels, answer.fit.circle);
   }
-  bool is_there = answer.likeness.divergence <= parameters.kept_divergence;
+  bool is_there = answer.likeness.divergence <= parameters.max_kept_divergence;
   if (!is_there || !is_found(answer.fit)) {
     const Answer elsewhere = find(pixels, budget, sizes);
     const bool is_better = elsewhere.fit.score() > (is_there ? answer.fit.score() + kBetter : 0.0);
@@ -362,7 +362,7 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
     }
   }
   if (!is_there) {
-    if (++images_without > parameters.lost_after_images) located = false;
+    if (++images_without > parameters.max_missed_images) located = false;
     return seen;
   }
   remember(answer);
@@ -383,8 +383,8 @@ Result<IntegratedTracker> IntegratedTracker::create(const ColorModel& model, con
                                                     int max_width_px, int max_height_px, double focal_px) {
   auto ball = make_ball_model(model, parameters.dark_factors);
   if (!ball) return tl::unexpected(ball.error());
-  if (!(parameters.ball.nearest_m < parameters.ball.farthest_m)) {
-    return fail("the ball's nearest_m is not below its farthest_m");
+  if (!(parameters.ball.min_distance_m < parameters.ball.max_distance_m)) {
+    return fail("the ball's min_distance_m is not below its max_distance_m");
   }
   const double learned_px = ball->diameter_px;
   const SizeRange usual_sizes = focal_px > 0.0 ? projected_size(parameters.ball, focal_px)

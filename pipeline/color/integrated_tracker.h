@@ -20,23 +20,24 @@ namespace cgsr::color {
 /// The shape of a ball: a circle of a size that is known to some degree.
 struct BallParameters {
   double diameter_m = 0.20;
-  double nearest_m = 1.0;
-  double farthest_m = 7.0;
-  double found_agreement = 0.60;
-  double kept_agreement = 0.45;
-  double least_inside = 0.60;
-  double most_around = 0.45;
+  double min_distance_m = 1.0;
+  double max_distance_m = 7.0;
+  double min_found_agreement = 0.60;
+  double min_kept_agreement = 0.45;
+  double min_inside = 0.60;
+  double max_around = 0.45;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("diameter_m", self.diameter_m, {0.01, 2.0}, "m", "of the ball");
-    visit.number("nearest_m", self.nearest_m, {0.1, 100.0}, "m", "from the camera; gives the largest circle");
-    visit.number("farthest_m", self.farthest_m, {0.1, 100.0}, "m", "from the camera; gives the smallest circle");
-    visit.number("found_agreement", self.found_agreement, {0.0, 1.0}, "",
+    visit.number("min_distance_m", self.min_distance_m, {0.1, 100.0}, "m", "from the camera; gives the largest circle");
+    visit.number("max_distance_m", self.max_distance_m, {0.1, 100.0}, "m",
+                 "from the camera; gives the smallest circle");
+    visit.number("min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
                  "share of a circle on which the image's edge lies and runs along it, at first sight");
-    visit.number("kept_agreement", self.kept_agreement, {0.0, 1.0}, "", "the same of a ball that is followed");
-    visit.number("least_inside", self.least_inside, {0.0, 1.0}, "", "share of the circle in the ball's colours");
-    visit.number("most_around", self.most_around, {0.0, 1.0}, "", "share of the ring around it in these colours");
+    visit.number("min_kept_agreement", self.min_kept_agreement, {0.0, 1.0}, "", "the same of a ball that is followed");
+    visit.number("min_inside", self.min_inside, {0.0, 1.0}, "", "share of the circle in the ball's colours");
+    visit.number("max_around", self.max_around, {0.0, 1.0}, "", "share of the ring around it in these colours");
   }
 };
 
@@ -44,10 +45,10 @@ struct BallParameters {
 struct IntegratedParameters {
   std::array<double, 3> dark_factors{0.25, 0.40, 0.55};
   double max_divergence = 0.33;
-  double found_divergence = 0.24;
-  double kept_divergence = 0.28;
+  double max_found_divergence = 0.24;
+  double max_kept_divergence = 0.28;
   int candidates = 6;
-  int lost_after_images = 3;
+  int max_missed_images = 3;
   SearchParameters search{Divergence::kJensenShannon, BinWeights::kPlain, 0.1, 4, 1.9, 8.0, 4};
   BallParameters ball;
 
@@ -57,12 +58,13 @@ struct IntegratedParameters {
                   "what the lights of the model are multiplied by where there may be shade");
     visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
                  "a window farther than this from every histogram of a search is not looked at");
-    visit.number("found_divergence", self.found_divergence, {0.0, 0.7}, "nat",
+    visit.number("max_found_divergence", self.max_found_divergence, {0.0, 0.7}, "nat",
                  "what the circle's inside may differ from the nearest histogram at first sight");
-    visit.number("kept_divergence", self.kept_divergence, {0.0, 0.7}, "nat", "the same of a ball that is followed");
+    visit.number("max_kept_divergence", self.max_kept_divergence, {0.0, 0.7}, "nat",
+                 "the same of a ball that is followed");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
                  "windows of each of the two searches of which the shape is looked at");
-    visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
+    visit.number("max_missed_images", self.max_missed_images, {1, 1000}, "",
                  "images without the ball after which it is found as at first sight");
     visit.section("search", self.search, "The two searches over the image; their sizes span what the ball can have");
     visit.section("ball", self.ball, "Its shape");

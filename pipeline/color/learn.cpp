@@ -155,7 +155,7 @@ Result<Learned> learn(std::span<const Sample> samples, const LearnParameters& pa
     return fail(fmt::format("{} samples given, 1 to {} can be learned from", samples.size(), kMaxSamples));
   }
   const auto lights = light_grid(parameters.lights);
-  if (lights.empty()) return fail("no light of the grid is plausible: check lowest, highest and max_green_excess");
+  if (lights.empty()) return fail("no light of the grid is plausible: check min_level, max_level and max_green_excess");
   std::vector<imaging::ReducedImage> images;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     auto image = coded_image(samples[i], i);

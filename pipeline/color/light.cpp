@@ -8,11 +8,11 @@ bool is_plausible(const Light& light, const LightParameters& parameters) {
 
 std::vector<Light> light_grid(const LightParameters& parameters) {
   std::vector<Light> lights;
-  if (!(parameters.lowest <= parameters.highest)) return lights;
+  if (!(parameters.min_level <= parameters.max_level)) return lights;
   const int steps = parameters.steps;
   const auto level = [&](int i) {
     const double share = steps > 1 ? static_cast<double>(i) / (steps - 1) : 0.5;
-    return parameters.lowest + share * (parameters.highest - parameters.lowest);
+    return parameters.min_level + share * (parameters.max_level - parameters.min_level);
   };
   for (int r = 0; r < steps; ++r) {
     for (int g = 0; g < steps; ++g) {

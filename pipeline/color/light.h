@@ -10,20 +10,20 @@ namespace cgsr::color {
 /// The colour of a global light: what it multiplies each channel by (diagonal model, Eq. 3.1). 1 is the brightest that is simulated.
 using Light = imaging::Rgb;
 
-/// The lights that learning simulates: a grid of steps^3 over [lowest, highest], without the implausible ones.
+/// The lights that learning simulates: a grid of steps^3 over [min_level, max_level], without the implausible ones.
 struct LightParameters {
   int steps = 3;
-  double lowest = 0.6;
-  double highest = 1.0;
+  double min_level = 0.6;
+  double max_level = 1.0;
   double max_green_excess = 1.0;
   double assumed = 0.8;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("steps", self.steps, Range{1, 5}, "", "simulated lights per channel");
-    visit.number("lowest", self.lowest, Range{0.05, 1.0}, "",
+    visit.number("min_level", self.min_level, Range{0.05, 1.0}, "",
                  "darkest simulated light; below 0.4 false positives grow");
-    visit.number("highest", self.highest, Range{0.05, 1.0}, "", "brightest simulated light");
+    visit.number("max_level", self.max_level, Range{0.05, 1.0}, "", "brightest simulated light");
     visit.number("max_green_excess", self.max_green_excess, Range{0.0, 1.0}, "",
                  "a light whose green exceeds the mean of its red and blue by more is implausible; 1 accepts all");
     visit.number("assumed", self.assumed, Range{0.05, 1.0}, "",
@@ -45,7 +45,7 @@ constexpr imaging::Rgb without_light(const imaging::Rgb& recorded, const Light& 
 bool is_plausible(const Light& light, const LightParameters& parameters);
 
 /// \return the plausible lights of the grid in the order r, g, b (b fastest); with one step the middle of the range.
-///         Empty when the predicate leaves none or lowest > highest.
+///         Empty when the predicate leaves none or min_level > max_level.
 std::vector<Light> light_grid(const LightParameters& parameters);
 
 }  // namespace cgsr::color

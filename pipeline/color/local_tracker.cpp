@@ -239,7 +239,7 @@ void LocalTracker::follow_light(const imaging::Pyramid& image) {
                    (now.b + kDark) / (before.b + kDark)};
   const double largest = std::max({gain.r, gain.g, gain.b});
   const double least = std::min({gain.r, gain.g, gain.b});
-  if (std::max(std::log(largest), -std::log(least)) <= parameters_.light_step) return;
+  if (std::max(std::log(largest), -std::log(least)) <= parameters_.min_light_step) return;
   if (largest > kMostGain || least < kLeastGain) return;
   relit_ = remembered_;
   relight(relit_, gain);

@@ -18,7 +18,7 @@ struct LocalParameters {
   double color_share = 0.3;
   double color_rate = 0.04;
   double inner_margin = 0.2;
-  double light_step = 0.06;
+  double min_light_step = 0.06;
   double light_rate = 0.8;
   CorrelationParameters correlation;
   ScaleParameters scale;
@@ -32,7 +32,7 @@ struct LocalParameters {
     visit.number("inner_margin", self.inner_margin, {0.0, 0.45}, "",
                  "what is cut off the box, in mean sides, before its colours count as the object's");
     visit.number(
-        "light_step", self.light_step, {0.01, 1.0}, "",
+        "min_light_step", self.min_light_step, {0.01, 1.0}, "",
         "change of a channel's mean over the whole image (as a logarithm) that is taken for a change of the light");
     visit.number("light_rate", self.light_rate, {0.0, 1.0}, "",
                  "how far the pixel colours follow such a change at once");

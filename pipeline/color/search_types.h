@@ -25,7 +25,7 @@ struct SearchParameters {
   int sizes = 3;
   double size_step = 1.12;
   double max_stride_px = 8.0;
-  int stride_share = 8;
+  int min_steps_per_side = 8;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -36,7 +36,8 @@ struct SearchParameters {
     visit.number("sizes", self.sizes, Range{1, 5}, "", "window sizes per image, around the one asked for");
     visit.number("size_step", self.size_step, Range{1.01, 2.0}, "", "ratio of neighbouring sizes");
     visit.number("max_stride_px", self.max_stride_px, Range{1.0, 64.0}, "px", "largest step between windows");
-    visit.number("stride_share", self.stride_share, Range{2, 32}, "", "steps per shorter side of the box, at least");
+    visit.number("min_steps_per_side", self.min_steps_per_side, Range{2, 32}, "",
+                 "steps per shorter side of the box, at least");
   }
 };
 

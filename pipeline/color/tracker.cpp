@@ -48,7 +48,7 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.located = true;
   s.images_since_sight = 0;
   s.weak_images = 0;
-  s.foreign_images = 0;
+  s.max_foreign_images = 0;
 }
 
 SearchResult Tracker::search(const imaging::ReducedImage& reduced, WorkBudget& budget) {

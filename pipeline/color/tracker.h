@@ -31,19 +31,19 @@ inline constexpr std::array kTrackModeNames{
 struct DoubtParameters {
   int warm_up_images = 8;
   double mean_rate = 0.05;
-  double weak_sharpness = 8.0;
-  double weak_score = 0.8;
-  double weak_divergence = 0.1;
-  double foreign_agreement = 0.62;
-  int foreign_images = 5;
-  int lost_after_images = 3;
-  double stay_sharpness = 8.0;
-  double stay_score = 0.7;
-  double again_score = 0.75;
-  double again_agreement = 0.9;
-  double found_sharpness = 14.0;
-  double found_score = 0.45;
-  double found_agreement = 0.86;
+  double min_sure_sharpness = 8.0;
+  double min_sure_score = 0.8;
+  double max_divergence_rise = 0.1;
+  double min_agreement = 0.62;
+  int max_foreign_images = 5;
+  int max_doubtful_images = 3;
+  double min_stay_sharpness = 8.0;
+  double min_stay_score = 0.7;
+  double min_reacquire_score = 0.75;
+  double min_reacquire_agreement = 0.9;
+  double min_found_sharpness = 14.0;
+  double min_found_score = 0.45;
+  double min_found_agreement = 0.86;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -51,30 +51,31 @@ struct DoubtParameters {
                  "images after a first sight in which the means are not yet trusted: a first sight's own conditions "
                  "count instead");
     visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "", "share of each sure image in the running means");
-    visit.number("weak_sharpness", self.weak_sharpness, {0.0, 50.0}, "",
+    visit.number("min_sure_sharpness", self.min_sure_sharpness, {0.0, 50.0}, "",
                  "a peak below this, with the next two, is doubted");
-    visit.number("weak_score", self.weak_score, {0.0, 2.0}, "", "a score below this share of its mean");
-    visit.number("weak_divergence", self.weak_divergence, {0.0, 0.7}, "nat",
+    visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "", "a score below this share of its mean");
+    visit.number("max_divergence_rise", self.max_divergence_rise, {0.0, 0.7}, "nat",
                  "a divergence above its mean by more than this");
-    visit.number("foreign_agreement", self.foreign_agreement, {0.0, 1.0}, "",
+    visit.number("min_agreement", self.min_agreement, {0.0, 1.0}, "",
                  "a box in which more of the learned colours is missing holds something else, however sure the local "
                  "tracker is");
-    visit.number("foreign_images", self.foreign_images, {1, 1000}, "", "such images in a row end what was followed");
-    visit.number("lost_after_images", self.lost_after_images, {1, 1000}, "",
+    visit.number("max_foreign_images", self.max_foreign_images, {1, 1000}, "",
+                 "such images in a row end what was followed");
+    visit.number("max_doubtful_images", self.max_doubtful_images, {1, 1000}, "",
                  "doubtful images after which the object is lost");
-    visit.number("stay_sharpness", self.stay_sharpness, {0.0, 50.0}, "",
+    visit.number("min_stay_sharpness", self.min_stay_sharpness, {0.0, 50.0}, "",
                  "what ends a loss in the place where it began");
-    visit.number("stay_score", self.stay_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+    visit.number("min_stay_score", self.min_stay_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
     visit.number(
-        "again_score", self.again_score, {0.0, 2.0}, "",
+        "min_reacquire_score", self.min_reacquire_score, {0.0, 2.0}, "",
         "what a place elsewhere needs to be the object as it was last seen: its score, as a share of the mean");
-    visit.number("again_agreement", self.again_agreement, {0.0, 1.0}, "",
+    visit.number("min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
                  "and how far it has the learned colours in the learned amounts, its light taken out");
-    visit.number("found_sharpness", self.found_sharpness, {0.0, 50.0}, "",
+    visit.number("min_found_sharpness", self.min_found_sharpness, {0.0, 50.0}, "",
                  "what a sight anywhere else needs, as the first one does");
-    visit.number("found_score", self.found_score, {0.0, 2.0}, "",
+    visit.number("min_found_score", self.min_found_score, {0.0, 2.0}, "",
                  "and its score, as a share of what the learned picture itself scores");
-    visit.number("found_agreement", self.found_agreement, {0.0, 1.0}, "",
+    visit.number("min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
                  "and how far it has the learned colours in the learned amounts, its light taken out");
   }
 };
@@ -83,7 +84,7 @@ struct TrackParameters {
   TrackMode mode = TrackMode::kFull;
   double max_divergence = 0.40;
   int candidates = 3;
-  double size_limit = 5.0;
+  double max_size_ratio = 5.0;
   SearchParameters search;
   LocalParameters local;
   DoubtParameters doubt;
@@ -95,7 +96,7 @@ struct TrackParameters {
                  "a window farther than this from every learned histogram is not the object");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
                  "best windows of the search that are looked at closely");
-    visit.number("size_limit", self.size_limit, {1.0, 20.0}, "",
+    visit.number("max_size_ratio", self.max_size_ratio, {1.0, 20.0}, "",
                  "largest and smallest box, as a factor of the learned one's sides");
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");

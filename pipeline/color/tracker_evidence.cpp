@@ -32,18 +32,18 @@ Tint Tracker::State::tint(const Box& at) const {
 bool Tracker::State::is_weak(const Place& place) const {
   const DoubtParameters& doubt = parameters.doubt;
   const bool warm = images_since_sight >= doubt.warm_up_images;
-  const double expected = warm ? doubt.weak_score * mean_score : doubt.found_score * first_score;
-  return place.local.sharpness < doubt.weak_sharpness && place.local.score < expected &&
-         place.divergence > mean_divergence + doubt.weak_divergence;
+  const double expected = warm ? doubt.min_sure_score * mean_score : doubt.min_found_score * first_score;
+  return place.local.sharpness < doubt.min_sure_sharpness && place.local.score < expected &&
+         place.divergence > mean_divergence + doubt.max_divergence_rise;
 }
 
 /// \return whether the object is where it was lost, as when something passed before it.
 bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) {
   const DoubtParameters& doubt = parameters.doubt;
   place = look(reduced, box);
-  return place.local.sharpness >= doubt.stay_sharpness && place.local.score >= doubt.stay_score * mean_score &&
-         place.divergence <= mean_divergence + doubt.weak_divergence &&
-         tint(place.local.box).agreement >= doubt.foreign_agreement;
+  return place.local.sharpness >= doubt.min_stay_sharpness && place.local.score >= doubt.min_stay_score * mean_score &&
+         place.divergence <= mean_divergence + doubt.max_divergence_rise &&
+         tint(place.local.box).agreement >= doubt.min_agreement;
 }
 
 /// Elsewhere, but as it looked last. A fast move blurs it, so that its shape says little; its colours must then be all there.
@@ -57,9 +57,9 @@ bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const Searc
     const Place other = look(reduced, centred_on(window, box.width, box.height));
     if (other.local.score > best.local.score) best = other;
   }
-  if (best.local.score < doubt.again_score * mean_score) return false;
-  if (best.divergence > mean_divergence + doubt.weak_divergence) return false;
-  if (tint(best.local.box).agreement < doubt.again_agreement) return false;
+  if (best.local.score < doubt.min_reacquire_score * mean_score) return false;
+  if (best.divergence > mean_divergence + doubt.max_divergence_rise) return false;
+  if (tint(best.local.box).agreement < doubt.min_reacquire_agreement) return false;
   place = best;
   return true;
 }
@@ -74,22 +74,22 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   for (int i = 0; i < matches.count && budget.grant(); ++i) {
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
     const Tint its_tint = tint(window);
-    if (its_tint.agreement < kGlanceAgreement * doubt.found_agreement) continue;
+    if (its_tint.agreement < kGlanceAgreement * doubt.min_found_agreement) continue;
     const LocalAnswer its_answer = local.look_under(its_tint.gain, pyramid, centred_on(window, box.width, box.height));
     if (its_answer.score <= best.score) continue;
     best = its_answer;
     seen = its_tint;
   }
-  if (best.score < kGlanceScore * doubt.found_score * first_score) return false;
-  if (best.sharpness < kGlanceSharpness * doubt.found_sharpness) return false;
+  if (best.score < kGlanceScore * doubt.min_found_score * first_score) return false;
+  if (best.sharpness < kGlanceSharpness * doubt.min_found_sharpness) return false;
   for (int round = 0; round < kRefinements && budget.grant(); ++round) {
     best = local.look_under(seen.gain, pyramid, best.box);
-    best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.size_limit);
+    best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.max_size_ratio);
     seen = tint(best.box);
   }
   const double its_divergence = divergence.of(reduced, best.box).divergence;
-  if (best.sharpness < doubt.found_sharpness || best.score < doubt.found_score * first_score) return false;
-  if (seen.agreement < doubt.found_agreement || its_divergence > parameters.max_divergence) return false;
+  if (best.sharpness < doubt.min_found_sharpness || best.score < doubt.min_found_score * first_score) return false;
+  if (seen.agreement < doubt.min_found_agreement || its_divergence > parameters.max_divergence) return false;
   place = {best, its_divergence};
   local.believe_light(seen.gain);
   images_since_sight = 0;

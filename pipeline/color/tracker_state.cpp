@@ -68,15 +68,15 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     located = true;
     images_lost = 0;
     weak_images = 0;
-    foreign_images = 0;
+    max_foreign_images = 0;
   }
 
   Box now = place.local.box;
-  if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.size_limit);
+  if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.max_size_ratio);
   box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
   const Tint seen = tint(box);
-  foreign_images = seen.agreement < parameters.doubt.foreign_agreement ? foreign_images + 1 : 0;
-  if (foreign_images >= parameters.doubt.foreign_images) {
+  max_foreign_images = seen.agreement < parameters.doubt.min_agreement ? max_foreign_images + 1 : 0;
+  if (max_foreign_images >= parameters.doubt.max_foreign_images) {
     start_again();
     return {};
   }

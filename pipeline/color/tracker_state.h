@@ -47,7 +47,7 @@ struct Tracker::State {
     constexpr std::array kScales{1.0, 0.7, 1.4};
     return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
   }
-  [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.lost_after_images; }
+  [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.max_doubtful_images; }
   void start_again();
   [[nodiscard]] bool is_weak(const Place& place) const;
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
@@ -70,9 +70,9 @@ struct Tracker::State {
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  int weak_images = 0;     ///< in a row.
-  int images_lost = 0;     ///< in a row.
-  int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
+  int weak_images = 0;         ///< in a row.
+  int images_lost = 0;         ///< in a row.
+  int max_foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
   double first_divergence = 0.0;
 };

@@ -86,7 +86,7 @@ tl::expected<WindowGrid, SearchFailure> window_grid(const SearchParameters& para
   WindowGrid grid;
   grid.factor = image.factor;
   const double shorter_px = std::min(request.width_px, request.height_px);
-  const double stride_px = std::min(parameters.max_stride_px, shorter_px / parameters.stride_share);
+  const double stride_px = std::min(parameters.max_stride_px, shorter_px / parameters.min_steps_per_side);
   grid.cell_px = std::max(1, static_cast<int>(stride_px / image.factor));
   grid.right = image.width_px / grid.cell_px;
   grid.bottom = image.height_px / grid.cell_px;

@@ -53,7 +53,7 @@ struct WindowGrid {
 /// The largest window, in label pixels: counts stay within 16 bits.
 inline constexpr int kMaxWindowPixels = 60000;
 
-/// Stride: at most max_stride_px and at most the shorter side over stride_share, whole label pixels, at least one. Sizes: the one asked
+/// Stride: at most max_stride_px and at most the shorter side over min_steps_per_side, whole label pixels, at least one. Sizes: the one asked
 /// for times size_step^k, k = -(n-1)/2 .. n/2, rounded to whole cells, at least one; sizes that fall together are one size, and those that do not fit
 /// into the image or region, or exceed kMaxWindowPixels, are left out.
 tl::expected<WindowGrid, SearchFailure> window_grid(const SearchParameters& parameters,

@@ -340,7 +340,7 @@ bool ConeStrip::is_shown(const Unknowns& x, int count) const {
     ++asked;
     if (contrast > 0.4 * x[kDark] && contrast < 1.7 * x[kDark]) ++shown;
   }
-  return asked >= 3 && shown >= parameters_.least_support * asked;
+  return asked >= 3 && shown >= parameters_.min_support * asked;
 }
 
 bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
@@ -434,7 +434,7 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   if (tip_along > reach - kLeastBeyond * kStep_m || tip_out < -kFurthestIn_m) return false;
   if (tip_out > std::min(kFurthestOut_m, std::max(kShort_m, kSteepest * tip_along))) return false;
   const double dark = x[kDark];
-  if (dark < parameters_.least_contrast || dark < parameters_.least_share * x[kLevel] || dark > 0.9 * x[kLevel])
+  if (dark < parameters_.min_contrast || dark < parameters_.min_contrast_ratio * x[kLevel] || dark > 0.9 * x[kLevel])
     return false;
   shadow.rms = std::sqrt(variance);
   if (shadow.rms > std::max(1.8, 0.1 * dark)) return false;
@@ -451,7 +451,7 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   const double distance = (shadow.p_BS - probe_.foot_B).norm();
   const double flat = (shadow.p_BS - probe_.p_BA.head<2>()).norm();
   if (distance < 1.15 * probe_.radius_m) return false;
-  if (flat > probe_.p_BA.z() * std::tan(parameters_.largest_angle_deg * std::numbers::pi / 180.0)) return false;
+  if (flat > probe_.p_BA.z() * std::tan(parameters_.max_angle_deg * std::numbers::pi / 180.0)) return false;
   const Vector3d p_BS(shadow.p_BS.x(), shadow.p_BS.y(), 0.0);
   const auto at = view.derivative(p_BS);
   if (!at.in_front) return false;

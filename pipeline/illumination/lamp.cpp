@@ -182,7 +182,7 @@ LampEstimate estimate_lamp(const Board& board, const LampParameters& parameters,
     if (first < 0 || shadow[i]->lines > shadow[static_cast<std::size_t>(first)]->lines) first = static_cast<int>(i);
   }
   if (first < 0) return estimate;
-  if (rays == 2 && (alone[0] - alone[1]).norm() > parameters.agree_within_m) {
+  if (rays == 2 && (alone[0] - alone[1]).norm() > parameters.max_disagreement_m) {
     estimate.status = LampStatus::kDisagree;
     return estimate;
   }

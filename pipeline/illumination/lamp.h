@@ -19,24 +19,24 @@ namespace cgsr::illumination {
 struct LampParameters {
   double height_m = 2.75;
   double height_sigma_m = 0.02;
-  double agree_within_m = 0.5;
-  double pose_sigma_m = 0.01;
-  double pose_sigma_deg = 0.3;
-  int steady_after = 3;
-  int gone_after = 6;
+  double max_disagreement_m = 0.5;
+  double min_pose_sigma_m = 0.01;
+  double min_pose_sigma_deg = 0.3;
+  int min_steady_images = 3;
+  int max_missing_images = 6;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("height_m", self.height_m, {0.1, 20.0}, "m", "of a lamp above the floor, where it is not measured");
     visit.number("height_sigma_m", self.height_sigma_m, {1e-4, 10.0}, "m",
                  "how well that is known; large: two shadows or several standpoints tell the height");
-    visit.number("agree_within_m", self.agree_within_m, {0.01, 10.0}, "m",
+    visit.number("max_disagreement_m", self.max_disagreement_m, {0.01, 10.0}, "m",
                  "probes that put a lamp further apart than this are not believed");
-    visit.number("pose_sigma_m", self.pose_sigma_m, {0.0, 1.0}, "m",
+    visit.number("min_pose_sigma_m", self.min_pose_sigma_m, {0.0, 1.0}, "m",
                  "of the robot's place, at the least, whatever its estimate says of itself");
-    visit.number("pose_sigma_deg", self.pose_sigma_deg, {0.0, 20.0}, "deg", "of its heading, likewise");
-    visit.number("steady_after", self.steady_after, {1, 1000}, "", "images that must agree on a lamp");
-    visit.number("gone_after", self.gone_after, {1, 1000}, "",
+    visit.number("min_pose_sigma_deg", self.min_pose_sigma_deg, {0.0, 20.0}, "deg", "of its heading, likewise");
+    visit.number("min_steady_images", self.min_steady_images, {1, 1000}, "", "images that must agree on a lamp");
+    visit.number("max_missing_images", self.max_missing_images, {1, 1000}, "",
                  "images in a row without a shadow that should be there: off, or moved");
   }
 };

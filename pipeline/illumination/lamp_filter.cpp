@@ -145,8 +145,8 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
   if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow)
     return change;
   geometry::Matrix6d pose = pose_covariance;
-  const double place = parameters_.pose_sigma_m * parameters_.pose_sigma_m;
-  const double turn = parameters_.pose_sigma_deg * std::numbers::pi / 180.0;
+  const double place = parameters_.min_pose_sigma_m * parameters_.min_pose_sigma_m;
+  const double turn = parameters_.min_pose_sigma_deg * std::numbers::pi / 180.0;
   pose(0, 0) = std::max(pose(0, 0), place);
   pose(1, 1) = std::max(pose(1, 1), place);
   pose(5, 5) = std::max(pose(5, 5), turn * turn);
@@ -182,7 +182,7 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
       correct(track, shadow, X_WR, pose, registration, 2);
       ++track.known.seen;
       track.known.missed = 0;
-      if (!track.known.steady && track.known.seen >= parameters_.steady_after) {
+      if (!track.known.steady && track.known.seen >= parameters_.min_steady_images) {
         track.known.steady = true;
         change.found = true;
       }
@@ -227,7 +227,7 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
       }
       correct(track, shadow, X_WR, pose, registration, 4);
       track.known.seen = 1;
-      track.known.steady = parameters_.steady_after <= 1;
+      track.known.steady = parameters_.min_steady_images <= 1;
       change.found = change.found || track.known.steady;
       track_[static_cast<std::size_t>(count_++)] = track;
     }
@@ -237,7 +237,7 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
     track.known.p_WL = track.x.head<3>();
     track.known.covariance = track.P.topLeftCorner<3, 3>();
     const bool doubted = !track.known.steady && track.known.missed >= 2;
-    if (track.known.missed < parameters_.gone_after && !doubted) {
+    if (track.known.missed < parameters_.max_missing_images && !doubted) {
       ++t;
       continue;
     }

@@ -10,20 +10,20 @@ namespace cgsr::illumination {
 
 struct ShadowParameters {
   double lamp_radius_m = 0.05;
-  double least_contrast = 2.0;
-  double least_share = 0.015;
-  double least_support = 0.7;
-  double largest_angle_deg = 76.0;
+  double min_contrast = 2.0;
+  double min_contrast_ratio = 0.015;
+  double min_support = 0.7;
+  double max_angle_deg = 76.0;
   double spacing_px = 5.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("lamp_radius_m", self.lamp_radius_m, {0.0, 1.0}, "m", "of a lamp: how soft shadows are");
-    visit.number("least_contrast", self.least_contrast, {0.5, 100.0}, "grey levels", "between board and shadow");
-    visit.number("least_share", self.least_share, {0.0, 1.0}, "", "the same, of the board's brightness");
-    visit.number("least_support", self.least_support, {0.0, 1.0}, "",
+    visit.number("min_contrast", self.min_contrast, {0.5, 100.0}, "grey levels", "between board and shadow");
+    visit.number("min_contrast_ratio", self.min_contrast_ratio, {0.0, 1.0}, "", "the same, of the board's brightness");
+    visit.number("min_support", self.min_support, {0.0, 1.0}, "",
                  "of the places along a line, how many must show the shadow's own contrast");
-    visit.number("largest_angle_deg", self.largest_angle_deg, {30.0, 88.0}, "deg",
+    visit.number("max_angle_deg", self.max_angle_deg, {30.0, 88.0}, "deg",
                  "of the light from the vertical: beyond it shadows are not looked for");
     visit.number("spacing_px", self.spacing_px, {1.0, 50.0}, "px", "between the places along a line");
   }

@@ -49,7 +49,7 @@ struct EdgePoint {
 };
 
 // Brightness across an expected line, at whole pixels; the strongest change within reach, to a fraction of a pixel. `at` keeps the reach inside.
-bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal, int reach, double least_contrast,
+bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal, int reach, double min_contrast,
                double& offset_px) {
   std::array<float, 2 * kMostReach_px + 3> value;
   const int count = 2 * reach + 3;
@@ -79,7 +79,7 @@ bool find_edge(const LumaView& image, const Vector2d& at, const Vector2d& normal
     return std::abs(value[k + 1] - value[k - 1]);
   };
   const float middle = change(best);
-  if (middle < static_cast<float>(least_contrast)) return false;
+  if (middle < static_cast<float>(min_contrast)) return false;
   const float before = change(best - 1);
   const float after = change(best + 1);
   const float bend = before - 2.0F * middle + after;
@@ -96,7 +96,7 @@ class Collector {
             int reach, const Round& round, std::array<EdgePoint, kMostPoints>& points)
       : board_(board), image_(image), view_(view), reach_(reach), round_(round), points_(points) {
     spacing_px_ = parameters.spacing_px * round.sparser;
-    least_contrast_ = parameters.least_contrast;
+    least_contrast_ = parameters.min_contrast;
     for (int i = 0; i < board_.probes; ++i) {
       const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
       behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
@@ -230,7 +230,7 @@ Registration attempt(const Board& board, const RegistrationParameters& parameter
     const BoardView view(board.camera, X_round);
     const Round& how = kRound[static_cast<std::size_t>(round)];
     const int count = Collector(board, parameters, image, view, reach, how, points).collect();
-    if (count * how.sparser < parameters.least_points) return result;
+    if (count * how.sparser < parameters.min_points) return result;
     Vector6d total = Vector6d::Zero();
     for (int step = 0; step < kSteps; ++step) {
       Matrix6d H = prior.asDiagonal();
@@ -256,7 +256,7 @@ Registration attempt(const Board& board, const RegistrationParameters& parameter
       result.points = agree[0] + agree[1] + agree[2];
       result.cones = (agree[1] >= 8 ? 1 : 0) | (agree[2] >= 8 ? 2 : 0);
       result.rms_px = result.points > 0 ? std::sqrt(squares / result.points) : 0.0;
-      result.good = result.points >= parameters.least_points && result.points >= kLeastAgreeing * count &&
+      result.good = result.points >= parameters.min_points && result.points >= kLeastAgreeing * count &&
                     result.cones != 0 && result.rms_px < kMostRms_px && round + 1 == kRounds;
     }
     result.X_BC = geometry::moved(X_round, total);

@@ -13,8 +13,8 @@ struct RegistrationParameters {
   double spacing_px = 10.0;
   double first_reach_px = 13.0;
   double next_reach_px = 4.0;
-  double least_contrast = 5.0;
-  int least_points = 24;
+  double min_contrast = 5.0;
+  int min_points = 24;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -22,8 +22,8 @@ struct RegistrationParameters {
     visit.number("first_reach_px", self.first_reach_px, {2.0, 15.0}, "px",
                  "how far from where the mount says an edge is sought");
     visit.number("next_reach_px", self.next_reach_px, {2.0, 15.0}, "px", "likewise, once it was found");
-    visit.number("least_contrast", self.least_contrast, {1.0, 100.0}, "grey levels", "of an edge that is believed");
-    visit.number("least_points", self.least_points, {6, 400}, "",
+    visit.number("min_contrast", self.min_contrast, {1.0, 100.0}, "grey levels", "of an edge that is believed");
+    visit.number("min_points", self.min_points, {6, 400}, "",
                  "points found on board and cones; with fewer the image is not answered");
   }
 };

@@ -173,8 +173,8 @@ bool ShadowFit::may_be_shadow(const ShadowUnknowns& x) const {
   const double distance = (x.head<2>() - probe_.foot_B).norm();
   const double flat = (x.head<2>() - probe_.p_BA.head<2>()).norm();
   return distance >= 1.15 * probe_.radius_m &&
-         flat <= probe_.p_BA.z() * std::tan(parameters_.largest_angle_deg * kRadPerDeg) &&
-         x[kDark] >= parameters_.least_contrast && x[kDark] >= parameters_.least_share * x[kLevel];
+         flat <= probe_.p_BA.z() * std::tan(parameters_.max_angle_deg * kRadPerDeg) &&
+         x[kDark] >= parameters_.min_contrast && x[kDark] >= parameters_.min_contrast_ratio * x[kLevel];
 }
 
 // Do the places along the lines show it, each by itself?
@@ -208,7 +208,7 @@ bool ShadowFit::is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const {
   }
   shadow.lines = 0;
   for (std::size_t side = 0; side < 2; ++side) {
-    const bool enough = asked[side] >= 3 && shown[side] >= parameters_.least_support * asked[side];
+    const bool enough = asked[side] >= 3 && shown[side] >= parameters_.min_support * asked[side];
     if (asked[side] >= 3 && !enough) return false;
     shadow.line_seen[side] = enough;
     shadow.lines += enough ? 1 : 0;

@@ -173,7 +173,7 @@ bool ShadowFinder::may_be_middle(int ray) const {
       v += value_[k][ring];
     }
   }
-  const float least = -0.25F * static_cast<float>(parameters_.least_contrast);
+  const float least = -0.25F * static_cast<float>(parameters_.min_contrast);
   if (n >= 3.0F) return v < least * n;
   // The cone hides it: one of its sides, then.
   for (const int way : {-1, 1}) {
@@ -419,8 +419,8 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     sum_rays();
     const Candidate candidate = best_candidate(tried, tried_count, everywhere_);
     if (candidate.ray < 0 || candidate.score < kLeastScore ||
-        candidate.start.contrast < 0.5 * parameters_.least_contrast ||
-        candidate.start.contrast < 0.5 * parameters_.least_share * plane_[0] ||
+        candidate.start.contrast < 0.5 * parameters_.min_contrast ||
+        candidate.start.contrast < 0.5 * parameters_.min_contrast_ratio * plane_[0] ||
         (found.count > 0 && candidate.start.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
       break;
     }

@@ -87,8 +87,8 @@ std::span<const EdgePixel> EdgeDetector::find(const std::uint8_t* grey, int widt
 
   measure_noise(grey, stride);
   const double floor = parameters_.noise_factor * kNoiseGain * noise_;
-  const double least = std::max(parameters_.least_contrast * kStepGain, floor);
-  const double strong = std::max(parameters_.strong_contrast * kStepGain, 1.6 * floor);
+  const double least = std::max(parameters_.min_contrast * kStepGain, floor);
+  const double strong = std::max(parameters_.min_strong_contrast * kStepGain, 1.6 * floor);
   least_ = static_cast<std::int16_t>(std::min(least, 32000.0));
   strong_ = static_cast<std::int16_t>(std::min(strong, 32000.0));
 

@@ -24,15 +24,15 @@ struct EdgePixel {
 };
 
 struct EdgeParameters {
-  double least_contrast = 5.0;
-  double strong_contrast = 10.0;
+  double min_contrast = 5.0;
+  double min_strong_contrast = 10.0;
   double noise_factor = 3.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("least_contrast", self.least_contrast, {1.0, 100.0}, "levels",
+    visit.number("min_contrast", self.min_contrast, {1.0, 100.0}, "levels",
                  "grey levels across a sharp step that make an edge where it goes on from a stronger one");
-    visit.number("strong_contrast", self.strong_contrast, {1.0, 200.0}, "levels",
+    visit.number("min_strong_contrast", self.min_strong_contrast, {1.0, 200.0}, "levels",
                  "with this an edge stands on its own");
     visit.number(
         "noise_factor", self.noise_factor, {0.0, 20.0}, "",

@@ -164,7 +164,7 @@ std::size_t SegmentFinder::farthest_from_chord(std::size_t first, std::size_t la
   const float dx = x_[last] - x_[first];
   const float dy = y_[last] - y_[first];
   const float offset = dx * y_[first] - dy * x_[first];
-  float greatest = static_cast<float>(parameters_.straightness_px) * std::sqrt(dx * dx + dy * dy);
+  float greatest = static_cast<float>(parameters_.max_deviation_px) * std::sqrt(dx * dx + dy * dy);
   std::size_t farthest = last;
   for (std::size_t i = first + 1; i < last; ++i) {
     const float distance = std::abs(dx * y_[i] - dy * x_[i] - offset);
@@ -208,7 +208,7 @@ void SegmentFinder::split_chain() {
 bool SegmentFinder::is_straight(std::size_t first, std::size_t last) const {
   if (last - first < kFewestPoints) return false;
   const FittedLine line = fit_line(sums_of(first, last), point(last) - point(first));
-  return line.rms < 0.3 * parameters_.straightness_px;
+  return line.rms < 0.3 * parameters_.max_deviation_px;
 }
 
 void SegmentFinder::add_piece(std::size_t first, std::size_t last) {
@@ -262,7 +262,7 @@ std::size_t SegmentFinder::cell_of(const Eigen::Vector2d& at) const {
 
 /// \return the nearest piece that begins where this one ends and lies on the same line.
 std::int32_t SegmentFinder::continuation_of(const Piece& piece, std::int32_t itself) const {
-  const double gap = parameters_.greatest_gap_px;
+  const double gap = parameters_.max_gap_px;
   const std::size_t low = cell_of(piece.last - Eigen::Vector2d::Constant(gap));
   const std::size_t high = cell_of(piece.last + Eigen::Vector2d::Constant(gap));
   const auto columns = static_cast<std::size_t>(cells_x_);
@@ -313,7 +313,7 @@ void SegmentFinder::join_pieces() {
       const Piece& other = pieces_[static_cast<std::size_t>(i)];
       const LineMoments sums = joined.sums + other.sums;
       const FittedLine line = fit_line(sums, joined.line.direction);
-      if (line.rms > 0.3 * parameters_.straightness_px) {  // a slow bend
+      if (line.rms > 0.3 * parameters_.max_deviation_px) {  // a slow bend
         add_segment(joined);
         joined = other;
         continue;
@@ -373,7 +373,7 @@ double SegmentFinder::correction_for_neighbours(const Piece& piece) const {
 }
 
 void SegmentFinder::add_segment(const Piece& piece) {
-  if (piece.length() < parameters_.least_length_px) return;
+  if (piece.length() < parameters_.min_length_px) return;
   const double measurements = std::max(piece.sums.n / kPointsPerMeasurement, 1.0);
   Segment segment;
   const Eigen::Vector2d normal(-piece.line.direction.y(), piece.line.direction.x());
@@ -387,7 +387,7 @@ void SegmentFinder::add_segment(const Piece& piece) {
 }
 
 void SegmentFinder::keep_longest() {
-  const auto most = static_cast<std::size_t>(parameters_.most_segments);
+  const auto most = static_cast<std::size_t>(parameters_.max_segments);
   if (segments_.size() <= most) return;
   const auto longer = [](const Segment& a, const Segment& b) {
     return (a.p1 - a.p0).squaredNorm() > (b.p1 - b.p0).squaredNorm();

@@ -24,20 +24,20 @@ struct Segment {
 
 struct SegmentParameters {
   EdgeParameters edges;
-  double least_length_px = 8.0;
-  double straightness_px = 0.8;
-  double greatest_gap_px = 8.0;
-  int most_segments = 1000;
+  double min_length_px = 8.0;
+  double max_deviation_px = 0.8;
+  double max_gap_px = 8.0;
+  int max_segments = 1000;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("edges", self.edges, "what counts as an edge pixel");
-    visit.number("least_length_px", self.least_length_px, {6.0, 100.0}, "px", "shorter ones are left out");
-    visit.number("straightness_px", self.straightness_px, {0.3, 5.0}, "px",
+    visit.number("min_length_px", self.min_length_px, {6.0, 100.0}, "px", "shorter ones are left out");
+    visit.number("max_deviation_px", self.max_deviation_px, {0.3, 5.0}, "px",
                  "an edge is split where it leaves the straight line between its ends by more");
-    visit.number("greatest_gap_px", self.greatest_gap_px, {0.0, 50.0}, "px",
+    visit.number("max_gap_px", self.max_gap_px, {0.0, 50.0}, "px",
                  "pieces on one line are one segment when no more than this lies between them");
-    visit.number("most_segments", self.most_segments, {1, 20000}, "", "of more the longest are kept");
+    visit.number("max_segments", self.max_segments, {1, 20000}, "", "of more the longest are kept");
   }
 };
 

@@ -52,11 +52,11 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
     : parameters_(parameters),
       expectation_(&expectation),
       camera_(camera),
-      view_(map, static_cast<std::size_t>(parameters.pieces_most)),
-      matcher_(static_cast<std::size_t>(parameters.pieces_most), most_perceived),
+      view_(map, static_cast<std::size_t>(parameters.max_pieces)),
+      matcher_(static_cast<std::size_t>(parameters.max_pieces), most_perceived),
       by_part_(camera.width_px, camera.height_px) {
-  visible_.reserve(static_cast<std::size_t>(parameters.pieces_most));
-  lines_.reserve(static_cast<std::size_t>(parameters.pieces_most) * 4);
+  visible_.reserve(static_cast<std::size_t>(parameters.max_pieces));
+  lines_.reserve(static_cast<std::size_t>(parameters.max_pieces) * 4);
   for (const Eigen::Vector3f& vertex : map.vertices) bounds_.extend(vertex.cast<double>());
   map_sigma_m_ = std::min(parameters.map_sigma_m, kMapSigmaOfSize * bounds_.diagonal().norm());
   // A low field is stood on, not in.
@@ -75,7 +75,7 @@ void Alternation::look(const geometry::Pose& X_WC) {
 bool Alternation::is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& metric) const {
   if (!X_WC_looked_) return true;
   const geometry::Vector6d since = geometry::step_between(*X_WC_looked_, X_WC);
-  return std::sqrt(since.dot(metric * since)) > parameters_.look_again_px;
+  return std::sqrt(since.dot(metric * since)) > parameters_.max_view_shift_px;
 }
 
 void Alternation::look_if_far(const geometry::Pose& X_WC) {
@@ -231,10 +231,10 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
                              const AlternateOptions& options, WorkBudget& budget) {
   Estimate estimate;
   estimate.solution.X_WC = start;
-  const auto least = static_cast<float>(parameters_.match_radius_least_px);
+  const auto least = static_cast<float>(parameters_.min_match_radius_px);
   MatchingRules rules;
   rules.radius_px = std::max(options.radius_px, least);
-  rules.angle_rad = static_cast<float>(parameters_.match_angle_deg * std::numbers::pi / 180.0);
+  rules.angle_rad = static_cast<float>(parameters_.max_match_angle_deg * std::numbers::pi / 180.0);
   SolverOptions solver;
   solver.paper = parameters_.method == Method::kPaper;
   solver.steps = 2;
@@ -269,7 +269,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     const geometry::Vector6d step = geometry::step_between(X_WC, solution.X_WC);
     const double moved = std::sqrt(step.dot(metric * step));
     X_WC = solution.X_WC;
-    if (moved < parameters_.settled_px && rules.radius_px <= least) break;
+    if (moved < parameters_.min_step_px && rules.radius_px <= least) break;
     look_now = options.look_again && is_far(X_WC, metric);
     rules.radius_px = std::max(least, rules.radius_px * kShrink);
   }

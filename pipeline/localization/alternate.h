@@ -75,7 +75,7 @@ class Alternation {
 
   /// Draws the expectation from a pose; project() and view() go with it.
   void look(const geometry::Pose& X_WC);
-  /// glCorrect projects what is known to be visible, and looks anew where the pose is farther than look_again_px from where that was seen; the
+  /// glCorrect projects what is known to be visible, and looks anew where the pose is farther than max_view_shift_px from where that was seen; the
   /// dissertation's methods look anew.
   void look_if_far(const geometry::Pose& X_WC);
   void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }

@@ -18,7 +18,7 @@ constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the
 constexpr float kChoiceCounts =
     0.08F;  // of the logarithm of the number of poses there are: the best of them by chance grows with it
 // A wrong map has a pose that fits a few of its edges, and leaves open what they do: with the least evidence a searched pose must be this
-// much surer than sigma_most_m; the more speaks for it, the less.
+// much surer than max_sigma_m; the more speaks for it, the less.
 constexpr double kSureShare = 0.3;
 constexpr double kSurePerEvidence = 2.5;
 constexpr double kSureMost = 1.2;
@@ -61,23 +61,23 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
             const LocalizerParameters& parameters) {
   const bool narrow = !standing || standing->narrow;
   const int least_expected = narrow ? kLeastFollowed : kLeastExpected;
-  const int least_matches = narrow ? std::min(kLeastFollowed, parameters.matches_least) : parameters.matches_least;
+  const int least_matches = narrow ? std::min(kLeastFollowed, parameters.min_matches) : parameters.min_matches;
   if (estimate.expected < least_expected) return Reason::kNothingExpected;
   if (!estimate.solved || estimate.matches < least_matches) return Reason::kTooFewMatches;
-  if (!standing && estimate.explained < parameters.explained_tracking) return Reason::kUnexplained;
-  if (estimate.solution.rms_px > parameters.rms_most_px) return Reason::kResidual;
-  if (estimate.prior_chi2 > parameters.prior_chi2_most) return Reason::kFarFromPrior;
-  if (standing && evidence_of(estimate, *standing) < parameters.evidence_least) {
+  if (!standing && estimate.explained < parameters.min_tracking_matched_ratio) return Reason::kUnexplained;
+  if (estimate.solution.rms_px > parameters.max_rms_px) return Reason::kResidual;
+  if (estimate.prior_chi2 > parameters.max_prior_chi2) return Reason::kFarFromPrior;
+  if (standing && evidence_of(estimate, *standing) < parameters.min_evidence) {
     const Standing alone{.lead = kMostLead, .cells = standing->cells};
-    return evidence_of(estimate, alone) < parameters.evidence_least ? Reason::kUnexplained : Reason::kAmbiguous;
+    return evidence_of(estimate, alone) < parameters.min_evidence ? Reason::kUnexplained : Reason::kAmbiguous;
   }
   if (!standing) return Reason::kNone;
-  double place_most_m = parameters.sigma_most_m;
+  double place_most_m = parameters.max_sigma_m;
   if (!standing->narrow) {
-    const double more = static_cast<double>(evidence_of(estimate, *standing)) - parameters.evidence_least;
+    const double more = static_cast<double>(evidence_of(estimate, *standing)) - parameters.min_evidence;
     place_most_m *= std::min(kSureMost, kSureShare + kSurePerEvidence * more);
   }
-  const double turn_most = parameters.sigma_most_deg * std::numbers::pi / 180.0;
+  const double turn_most = parameters.max_sigma_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= place_most_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= turn_most))
     return Reason::kUncertain;

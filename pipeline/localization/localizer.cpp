@@ -36,16 +36,16 @@ constexpr int kMostSurfaces = 1000;
 std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters) {
   if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
   render::RasterParameters raster;
-  raster.piece_least_px = kLeastPiece_px;
-  raster.surfaces_most = kMostSurfaces;
-  raster.edges_most = parameters.pieces_most;
+  raster.min_piece_px = kLeastPiece_px;
+  raster.max_surfaces = kMostSurfaces;
+  raster.max_edges = parameters.max_pieces;
   return std::make_unique<render::DepthRaster>(map, raster);
 }
 
 // Stronger's method works with all that it projects.
 LocalizerParameters fitted(LocalizerParameters parameters, const world::Map& map) {
   if (parameters.method == Method::kStronger)
-    parameters.pieces_most = std::max(parameters.pieces_most, static_cast<int>(map.edges.size()));
+    parameters.max_pieces = std::max(parameters.max_pieces, static_cast<int>(map.edges.size()));
   if (parameters.method != Method::kGlCorrect) {
     parameters.search = false;
     parameters.gate = false;
@@ -134,7 +134,7 @@ Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belie
   if (!estimate.solved || parameters.method != Method::kGlCorrect) return estimate;
   AlternateOptions options;
   options.rounds = 1;
-  options.radius_px = static_cast<float>(parameters.match_radius_least_px);
+  options.radius_px = static_cast<float>(parameters.min_match_radius_px);
   options.measured_noise = true;
   options.by_part = true;
   UnlimitedBudget whole;
@@ -146,9 +146,9 @@ std::optional<Correction> Localizer::State::from_near_starts(const Belief& belie
                                                              WorkBudget& budget) {
   Correction answer;
   AlternateOptions options;
-  options.rounds = parameters.iterations;
+  options.rounds = parameters.max_iterations;
   options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * shape.widest_px() + 2.0,
-                                                    parameters.match_radius_least_px, parameters.match_radius_px));
+                                                    parameters.min_match_radius_px, parameters.max_match_radius_px));
   options.look_first = false;  // drawn already, for the prior's width
   const bool narrow = shape.widest_px() <= kOneStart_px;
   options.by_part = parameters.search && !narrow;
@@ -220,7 +220,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     s.alternation.look_if_far(prior.X_WC);
     const PriorShape shape = PriorShape::of(prior.covariance, s.alternation.motion_metric(prior.X_WC));
     std::optional<Correction> at_once;
-    if (!s.parameters.search || shape.widest_px() <= s.parameters.track_px)
+    if (!s.parameters.search || shape.widest_px() <= s.parameters.max_tracking_sigma_px)
       at_once = s.from_near_starts(belief, shape, budget);
     if (at_once) {
       answer = *at_once;

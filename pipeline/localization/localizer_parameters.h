@@ -30,31 +30,31 @@ struct LocalizerParameters {
   ExpectationKind expectation = ExpectationKind::kRaster;
   bool search = true;
   bool gate = true;
-  int iterations = 6;
-  double settled_px = 0.1;
-  double look_again_px = 6.0;
+  int max_iterations = 6;
+  double min_step_px = 0.1;
+  double max_view_shift_px = 6.0;
   double system_sigma_px = 0.9;
   double map_sigma_m = 0.005;
-  double match_angle_deg = 12.0;
-  double match_radius_px = 24.0;
-  double match_radius_least_px = 4.0;
-  double track_px = 7.0;
-  double start_spacing_px = 12.0;
-  double starts_per_cell = 32.0;
-  int starts_most = 500;
-  int starts_per_image = 8;
+  double max_match_angle_deg = 12.0;
+  double max_match_radius_px = 24.0;
+  double min_match_radius_px = 4.0;
+  double max_tracking_sigma_px = 7.0;
+  double hypothesis_spacing_px = 12.0;
+  double hypotheses_per_cell = 32.0;
+  int max_hypotheses = 500;
+  int hypotheses_per_image = 8;
   int finalists = 8;
   int neighbours = 40;
   int walks = 4;
-  int matches_least = 3;
-  double explained_tracking = 0.3;
-  double evidence_least = 0.48;
-  double prior_chi2_most =
+  int min_matches = 3;
+  double min_tracking_matched_ratio = 0.3;
+  double min_evidence = 0.48;
+  double max_prior_chi2 =
       22.0;  // chi square of six numbers exceeds it once in 800; the mount was told a little wrong besides
-  double sigma_most_m = 0.1;
-  double sigma_most_deg = 3.5;
-  double rms_most_px = 1.35;
-  int pieces_most = 1200;
+  double max_sigma_m = 0.1;
+  double max_sigma_deg = 3.5;
+  double max_rms_px = 1.35;
+  int max_pieces = 1200;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -65,44 +65,46 @@ struct LocalizerParameters {
         "ten times as much");
     visit.flag("search", self.search, "several starts where the prior is wide; off: from the prior alone");
     visit.flag("gate", self.gate, "a pose is corrected only where the evidence is enough");
-    visit.number("iterations", self.iterations, {1, 50}, "", "expectation and maximisation alternate at most so often");
-    visit.number("settled_px", self.settled_px, {0.001, 10.0}, "px", "a step that moves the image less ends them");
-    visit.number("look_again_px", self.look_again_px, {0.0, 100.0}, "px",
+    visit.number("max_iterations", self.max_iterations, {1, 50}, "",
+                 "expectation and maximisation alternate at most so often");
+    visit.number("min_step_px", self.min_step_px, {0.001, 10.0}, "px", "a step that moves the image less ends them");
+    visit.number("max_view_shift_px", self.max_view_shift_px, {0.0, 100.0}, "px",
                  "a pose that moved the image further looks again at what is visible");
     visit.number("system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
                  "error of camera and map in the image, beside the segment's own");
     visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
                  "error of the map's places: of each match, and of every pose");
-    visit.number("match_angle_deg", self.match_angle_deg, {1.0, 45.0}, "deg", "largest difference of direction");
-    visit.number("match_radius_px", self.match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
-    visit.number("match_radius_least_px", self.match_radius_least_px, {1.0, 50.0}, "px",
+    visit.number("max_match_angle_deg", self.max_match_angle_deg, {1.0, 45.0}, "deg",
+                 "largest difference of direction");
+    visit.number("max_match_radius_px", self.max_match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
+    visit.number("min_match_radius_px", self.min_match_radius_px, {1.0, 50.0}, "px",
                  "what it shrinks to as the pose settles");
-    visit.number("track_px", self.track_px, {0.0, 200.0}, "px",
+    visit.number("max_tracking_sigma_px", self.max_tracking_sigma_px, {0.0, 200.0}, "px",
                  "a prior whose sigma moves the image less is followed from one start");
-    visit.number("start_spacing_px", self.start_spacing_px, {2.0, 100.0}, "px",
+    visit.number("hypothesis_spacing_px", self.hypothesis_spacing_px, {2.0, 100.0}, "px",
                  "motion of the image that makes a cell of the prior");
-    visit.number("starts_per_cell", self.starts_per_cell, {1.0, 100.0}, "", "of the prior");
-    visit.number("starts_most", self.starts_most, {1, 2000}, "", "however wide the prior is");
-    visit.number("starts_per_image", self.starts_per_image, {0, 2000}, "", "0: as many as the budget grants");
+    visit.number("hypotheses_per_cell", self.hypotheses_per_cell, {1.0, 100.0}, "", "of the prior");
+    visit.number("max_hypotheses", self.max_hypotheses, {1, 2000}, "", "however wide the prior is");
+    visit.number("hypotheses_per_image", self.hypotheses_per_image, {0, 2000}, "", "0: as many as the budget grants");
     visit.number("finalists", self.finalists, {1, 64}, "", "starts that are refined");
     visit.number("neighbours", self.neighbours, {0, 500}, "", "poses about the best one that are tried against it");
     visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
-    visit.number("matches_least", self.matches_least, {2, 1000}, "", "gate; two where a narrow prior is followed");
-    visit.number("explained_tracking", self.explained_tracking, {0.0, 1.0}, "",
+    visit.number("min_matches", self.min_matches, {2, 1000}, "", "gate; two where a narrow prior is followed");
+    visit.number("min_tracking_matched_ratio", self.min_tracking_matched_ratio, {0.0, 1.0}, "",
                  "gate where a narrow prior is followed: share of the expected length found; what hides much of the "
                  "map moves no pose");
-    visit.number("evidence_least", self.evidence_least, {-10.0, 2.0}, "",
+    visit.number("min_evidence", self.min_evidence, {-10.0, 2.0}, "",
                  "gate where several poses were tried: agreement of image and map, in the worst parts of the image "
                  "too, and lead, less distance and "
                  "width of the prior");
-    visit.number("prior_chi2_most", self.prior_chi2_most, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
+    visit.number("max_prior_chi2", self.max_prior_chi2, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
     visit.number(
-        "sigma_most_m", self.sigma_most_m, {0.001, 10.0}, "m",
+        "max_sigma_m", self.max_sigma_m, {0.001, 10.0}, "m",
         "gate where several poses were tried: of the position's worst direction; after a search times 0.3 to 1.2, "
         "by how much speaks for the pose");
-    visit.number("sigma_most_deg", self.sigma_most_deg, {0.01, 90.0}, "deg", "likewise of the worst axis of turning");
-    visit.number("rms_most_px", self.rms_most_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
-    visit.number("pieces_most", self.pieces_most, {16, 20000}, "",
+    visit.number("max_sigma_deg", self.max_sigma_deg, {0.01, 90.0}, "deg", "likewise of the worst axis of turning");
+    visit.number("max_rms_px", self.max_rms_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
+    visit.number("max_pieces", self.max_pieces, {16, 20000}, "",
                  "visible pieces of edges worked with, nearest and longest first");
   }
 };

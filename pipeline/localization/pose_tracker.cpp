@@ -121,10 +121,10 @@ void PoseTracker::flatten() {
 }
 
 void PoseTracker::widen() {
-  const double wide_rad = parameters_.wide_deg * kDegree;
+  const double wide_rad = parameters_.max_lost_sigma_deg * kDegree;
   for (int i = 0; i < 6; ++i) {
     if (parameters_.floor && i >= 2 && i <= 4) continue;
-    const double most = i < 3 ? parameters_.wide_m : wide_rad;
+    const double most = i < 3 ? parameters_.max_lost_sigma_m : wide_rad;
     const double sigma = std::sqrt(belief_(i, i));
     // Scaling rows and columns alike keeps it a covariance.
     const double factor = std::max(1.0, std::min(parameters_.widen, most / sigma));
@@ -136,7 +136,7 @@ void PoseTracker::widen() {
 // Carried along for so long that only a search would find it again.
 bool PoseTracker::has_outgrown() const {
   const double place = std::sqrt(std::max(belief_(0, 0), belief_(1, 1)));
-  return place > parameters_.lost_m || std::sqrt(belief_(5, 5)) > parameters_.lost_deg * kDegree;
+  return place > parameters_.max_sigma_m || std::sqrt(belief_(5, 5)) > parameters_.max_sigma_deg * kDegree;
 }
 
 const TrackedPose& PoseTracker::see(const ImageView& image, WorkBudget& budget, const std::uint8_t* mask) {
@@ -163,7 +163,7 @@ void PoseTracker::was_not_corrected() {
   const bool first_search = now_.state == TrackState::kUnsure && now_.failures == 0 && localizer_->searching();
   if (!first_search && !shows_nothing(now_.correction.reason)) ++now_.failures;
   const bool outgrown = now_.state == TrackState::kTracking && has_outgrown();
-  if (outgrown || now_.failures >= parameters_.lost_after) now_.state = TrackState::kLost;
+  if (outgrown || now_.failures >= parameters_.max_missed_corrections) now_.state = TrackState::kLost;
   if (now_.state == TrackState::kLost && !says_nothing(now_.correction.reason)) widen();
 }
 

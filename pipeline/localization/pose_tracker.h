@@ -16,12 +16,12 @@ struct PoseTrackerParameters {
   double level_deg = 0.1;
   double height_m = 0.01;
   bool floor = true;
-  int lost_after = 15;
-  double lost_m = 0.15;
-  double lost_deg = 4.0;
+  int max_missed_corrections = 15;
+  double max_sigma_m = 0.15;
+  double max_sigma_deg = 4.0;
   double widen = 1.25;
-  double wide_m = 0.5;
-  double wide_deg = 12.0;
+  double max_lost_sigma_m = 0.5;
+  double max_lost_sigma_deg = 12.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -35,15 +35,16 @@ struct PoseTrackerParameters {
                  "on a floor: how level it is and how well the base knows its pitch; never surer of roll and pitch");
     visit.number("height_m", self.height_m, {0.0005, 1.0}, "m", "on a floor: sigma of the camera's height");
     visit.flag("floor", self.floor, "height, roll and pitch are those of a robot on a level floor");
-    visit.number("lost_after", self.lost_after, {1, 1000}, "",
+    visit.number("max_missed_corrections", self.max_missed_corrections, {1, 1000}, "",
                  "images that should have corrected the pose and did not, after which it is lost; those that show "
                  "nothing of the map do not count");
-    visit.number("lost_m", self.lost_m, {0.01, 10.0}, "m",
+    visit.number("max_sigma_m", self.max_sigma_m, {0.01, 10.0}, "m",
                  "sigma of the position along the floor beyond which the pose is lost too");
-    visit.number("lost_deg", self.lost_deg, {0.1, 90.0}, "deg", "likewise of the heading");
+    visit.number("max_sigma_deg", self.max_sigma_deg, {0.1, 90.0}, "deg", "likewise of the heading");
     visit.number("widen", self.widen, {1.0, 10.0}, "", "growth of the belief with each search that fails when lost");
-    visit.number("wide_m", self.wide_m, {0.05, 10.0}, "m", "the belief's position never grows beyond this sigma");
-    visit.number("wide_deg", self.wide_deg, {1.0, 90.0}, "deg", "nor its heading beyond this");
+    visit.number("max_lost_sigma_m", self.max_lost_sigma_m, {0.05, 10.0}, "m",
+                 "the belief's position never grows beyond this sigma");
+    visit.number("max_lost_sigma_deg", self.max_lost_sigma_deg, {1.0, 90.0}, "deg", "nor its heading beyond this");
   }
 };
 

@@ -97,7 +97,7 @@ Estimate Rival::better_than(const Estimate& followed, const Belief& belief, cons
   if (lead_ < 0.0F) forget();
   if (lead_ < kEnough || images_ < kLeastImages) return followed;
   forget();
-  options.rounds = parameters_.iterations;
+  options.rounds = parameters_.max_iterations;
   options.look_first = true;
   // The belief moves as a whole: it is as sure there as the doubted one was here.
   const Belief moved({beside.solution.X_WC, covariance});

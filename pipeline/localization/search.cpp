@@ -111,10 +111,11 @@ void Search::begin(const Belief& belief) {
   shape_ = PriorShape::of(belief.prior.covariance, metric_);
   cells_ = 1.0;
   for (int i = 0; i < 6; ++i) {
-    if (shape_.motion_px[i] > kSpread_px) cells_ *= std::max(1.0, shape_.motion_px[i] / parameters_.start_spacing_px);
+    if (shape_.motion_px[i] > kSpread_px)
+      cells_ *= std::max(1.0, shape_.motion_px[i] / parameters_.hypothesis_spacing_px);
   }
   start_count_ = static_cast<std::uint32_t>(
-      std::min(static_cast<double>(parameters_.starts_most), std::ceil(parameters_.starts_per_cell * cells_)));
+      std::min(static_cast<double>(parameters_.max_hypotheses), std::ceil(parameters_.hypotheses_per_cell * cells_)));
   next_start_ = 0;
   next_finalist_ = 0;
   next_neighbour_ = 0;
@@ -188,8 +189,8 @@ std::optional<Estimate> Search::refined(const Pose& start, const Belief& belief,
 }
 
 bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
-  const AlternateOptions options{.rounds = parameters_.iterations,
-                                 .radius_px = static_cast<float>(parameters_.match_radius_px)};
+  const AlternateOptions options{.rounds = parameters_.max_iterations,
+                                 .radius_px = static_cast<float>(parameters_.max_match_radius_px)};
   while (next_finalist_ < finalists_.size()) {
     if (units <= 0) return false;
     units -= kFinalistUnits;
@@ -204,7 +205,7 @@ bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceive
 bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   if (estimates_.empty()) return true;
   const AlternateOptions options{.rounds = kNeighbourRounds,
-                                 .radius_px = 0.5F * static_cast<float>(parameters_.match_radius_px)};
+                                 .radius_px = 0.5F * static_cast<float>(parameters_.max_match_radius_px)};
   while (walk_ < parameters_.walks) {
     if (next_neighbour_ == 0) {
       X_WC_walk_ = estimates_.front().solution.X_WC;
@@ -216,7 +217,7 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
       Vector6d step = Vector6d::Zero();
       for (int i = 0; i < 6; ++i) {
         if (shape_.motion_px[i] < kNeighbourSpread_px) continue;
-        const double most = std::min(1.5, parameters_.start_spacing_px / shape_.motion_px[i]);
+        const double most = std::min(1.5, parameters_.hypothesis_spacing_px / shape_.motion_px[i]);
         const std::uint32_t number = static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
         step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
       }
@@ -238,8 +239,8 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
 
 // On the image at hand: the last word between the best and those that come next.
 void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
-  const AlternateOptions options{.rounds = parameters_.iterations,
-                                 .radius_px = static_cast<float>(2.0 * parameters_.match_radius_least_px),
+  const AlternateOptions options{.rounds = parameters_.max_iterations,
+                                 .radius_px = static_cast<float>(2.0 * parameters_.min_match_radius_px),
                                  .by_part = true};
   UnlimitedBudget whole;
   best_ = Estimate{};
@@ -263,7 +264,7 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
 }
 
 bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
-  int units = parameters_.starts_per_image > 0 ? parameters_.starts_per_image : 1 << 30;
+  int units = parameters_.hypotheses_per_image > 0 ? parameters_.hypotheses_per_image : 1 << 30;
   budget_is_whole_ = stage_ != Stage::kStarts;
   if (stage_ == Stage::kStarts) {
     field_.build(perceived);

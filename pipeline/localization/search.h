@@ -42,7 +42,7 @@ class Search {
 
   [[nodiscard]] const Estimate& best() const { return best_; }
   [[nodiscard]] float lead() const { return lead_; }
-  /// How many poses that differ by start_spacing_px the prior holds.
+  /// How many poses that differ by hypothesis_spacing_px the prior holds.
   [[nodiscard]] double cells() const { return cells_; }
   [[nodiscard]] int starts() const { return static_cast<int>(next_start_); }
 

@@ -34,26 +34,26 @@ DepthRaster::DepthRaster(const world::Map& map, const RasterParameters& paramete
       views_(parameters.width, parameters.height),
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, parameters),
-      edges_(spheres_of_edges(map), {.looked_at_most = parameters.looked_at_most, .chosen_most = parameters.edges_most},
+      edges_(spheres_of_edges(map), {.max_visited = parameters.max_visited, .chosen_most = parameters.max_edges},
              Preference::kLargest),
       buffer_(parameters.width, parameters.height) {
   // An edge that is crossed by many things falls into many pieces, but few do.
-  found_.reserve(2 * std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)) + 64);
+  found_.reserve(2 * std::min(map.edges.size(), static_cast<std::size_t>(parameters.max_edges)) + 64);
   lengths_.reserve(found_.capacity());
 }
 
 void DepthRaster::look(const geometry::Pose& X_WC, const geometry::Camera& camera, std::vector<VisiblePiece>& pieces) {
   pieces.clear();
-  if (pieces.capacity() == 0) pieces.reserve(static_cast<std::size_t>(parameters_.pieces_most));
+  if (pieces.capacity() == 0) pieces.reserve(static_cast<std::size_t>(parameters_.max_pieces));
   draw(X_WC, camera);
   found_.clear();
   // Spheres are told by their radius over their distance.
-  const double least_edge = 0.5 * parameters_.piece_least_px / std::max(camera.fx_px, camera.fy_px);
+  const double least_edge = 0.5 * parameters_.min_piece_px / std::max(camera.fx_px, camera.fy_px);
   // Further away than every surface was drawn, nobody knows what is hidden.
   least_w_ = least_w_within(surfaces_.reach_m(), *view_);
   for (const std::uint32_t edge : edges_.select(surfaces_.frustum(), least_edge, surfaces_.reach_m()))
     look_at_edge(edge);
-  keep_longest(std::min(pieces.capacity(), static_cast<std::size_t>(parameters_.pieces_most)));
+  keep_longest(std::min(pieces.capacity(), static_cast<std::size_t>(parameters_.max_pieces)));
   const auto earlier = [](const VisiblePiece& a, const VisiblePiece& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.from < b.from;
   };
@@ -96,7 +96,7 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
   const auto keep = [&](float begin, float end) {
     const VisiblePiece piece = line.piece(name, begin, end, *view_);
     const float long_px = (piece.p1 - piece.p0).norm();
-    if (long_px < static_cast<float>(parameters_.piece_least_px) || found_.size() == found_.capacity()) return;
+    if (long_px < static_cast<float>(parameters_.min_piece_px) || found_.size() == found_.capacity()) return;
     if (piece.from < piece.to) found_.push_back(piece);
   };
   const float end_slack = 1.0F / length;  // a cell: at a corner, the cell below may belong to a third surface

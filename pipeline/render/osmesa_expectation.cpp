@@ -181,12 +181,12 @@ void OsmesaExpectation::find_pieces(std::uint32_t edge, std::vector<VisiblePiece
   if (long_axis < 1e-3F) return;
   const int steps = std::max(1, static_cast<int>(std::lround(long_axis)));
   const float step = 1.0F / static_cast<float>(steps);
-  const auto gap = static_cast<int>(parameters_.gap_least_px * view_->cells_per_px_x());
+  const auto gap = static_cast<int>(parameters_.min_gap_px * view_->cells_per_px_x());
   const auto keep = [&](int first, int last) {
     const VisiblePiece piece =
         line.piece(edge, static_cast<float>(first) * step, static_cast<float>(last) * step, *view_);
     const float length_px = (piece.p1 - piece.p0).norm();
-    if (length_px >= static_cast<float>(parameters_.piece_least_px) && piece.from < piece.to) pieces.push_back(piece);
+    if (length_px >= static_cast<float>(parameters_.min_piece_px) && piece.from < piece.to) pieces.push_back(piece);
   };
   int first = -1;
   int last = -1;  // one beyond the last that was shown

@@ -13,11 +13,11 @@ struct ShadeParameters {
   double near_m = 0.05;
   double margin = 1e-5;
   double lift = 1e-3;
-  int surfaces_most = 4000;
-  int edges_most = 4000;
+  int max_surfaces = 4000;
+  int max_edges = 4000;
   double sigmas = 2.0;
   double map_sigma_m = 0.005;
-  int widest_cells = 7;
+  int max_widening_cells = 7;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -29,12 +29,12 @@ struct ShadeParameters {
     visit.number("margin", self.margin, {0.0, 0.01}, "",
                  "a surface shades what lies behind it by this share of the way");
     visit.number("lift", self.lift, {0.0, 0.1}, "", "volumes flatter than this share of the distance are none");
-    visit.number("surfaces_most", self.surfaces_most, {1, 10000000}, "", "drawn from the camera, and from the lamp");
-    visit.number("edges_most", self.edges_most, {1, 10000000}, "", "silhouettes whose volumes are drawn");
+    visit.number("max_surfaces", self.max_surfaces, {1, 10000000}, "", "drawn from the camera, and from the lamp");
+    visit.number("max_edges", self.max_edges, {1, 10000000}, "", "silhouettes whose volumes are drawn");
     visit.number("sigmas", self.sigmas, {0.0, 10.0}, "",
                  "standard errors of pose, lamp and map by which the mask of what may be shaded is widened");
     visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's corners, in every direction");
-    visit.number("widest_cells", self.widest_cells, {0, 7}, "", "by which it is widened at most");
+    visit.number("max_widening_cells", self.max_widening_cells, {0, 7}, "", "by which it is widened at most");
   }
 };
 

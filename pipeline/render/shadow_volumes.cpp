@@ -12,10 +12,10 @@ RasterParameters raster_of(const ShadeParameters& parameters) {
   raster.width = parameters.width * parameters.finer;
   raster.height = parameters.height * parameters.finer;
   raster.near_m = parameters.near_m;
-  raster.surfaces_most = parameters.surfaces_most;
-  raster.looked_at_most = std::max(raster.looked_at_most, 2 * parameters.surfaces_most);
-  raster.triangles_most = 8 * parameters.surfaces_most;
-  raster.surface_least_cells = 0.5;
+  raster.max_surfaces = parameters.max_surfaces;
+  raster.max_visited = std::max(raster.max_visited, 2 * parameters.max_surfaces);
+  raster.max_triangles = 8 * parameters.max_surfaces;
+  raster.min_surface_cells = 0.5;
   return raster;
 }
 
@@ -41,7 +41,7 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
   lamp_in_front_.resize(map.surfaces.size());
   rays_.resize(cells);
   ends_.resize(cells);
-  silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.edges_most)));
+  silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.max_edges)));
   sides_.resize(cells * static_cast<std::size_t>(parameters.finer * parameters.finer));
   masks_.width = parameters.width;
   masks_.height = parameters.height;
@@ -259,7 +259,7 @@ float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const 
   const double by_map = static_cast<double>(times) * parameters_.map_sigma_m;
   const double sigma_m = std::sqrt(std::max(variance(axes_.right), variance(axes_.down)) + by_map * by_map);
   const double cells = parameters_.sigmas * sigma_m * static_cast<double>(axes_.cells / depth);
-  return static_cast<float>(std::clamp(cells, 0.0, static_cast<double>(parameters_.widest_cells)));
+  return static_cast<float>(std::clamp(cells, 0.0, static_cast<double>(parameters_.max_widening_cells)));
 }
 
 /// Every second ray of every second row is followed; what lies between rays that end alike is taken to end alike when nothing else is seen

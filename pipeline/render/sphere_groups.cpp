@@ -77,7 +77,7 @@ void SphereGroups::Spheres::resize(std::size_t count) {
 
 SphereGroups::SphereGroups(std::span<const Sphere> spheres, const SelectionLimits& limits, Preference preference)
     : count_(spheres.size()),
-      looked_at_most_(std::max(static_cast<std::size_t>(limits.looked_at_most), kGroup)),
+      looked_at_most_(std::max(static_cast<std::size_t>(limits.max_visited), kGroup)),
       chosen_most_(static_cast<std::size_t>(limits.chosen_most)),
       weight_most_(static_cast<std::uint64_t>(limits.weight_most)),
       preference_(preference),

@@ -24,7 +24,7 @@ Frustum frustum_of(const geometry::Pose& X_WC, const View& view, double near_m);
 
 /// How much one call of SphereGroups::select() looks at and answers with.
 struct SelectionLimits {
-  int looked_at_most = 8192;  ///< spheres, whole groups of them, nearest first.
+  int max_visited = 8192;  ///< spheres, whole groups of them, nearest first.
   int chosen_most = std::numeric_limits<int>::max();
   int weight_most = std::numeric_limits<int>::max();  ///< of the chosen together.
 };

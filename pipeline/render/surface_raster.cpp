@@ -74,9 +74,9 @@ SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& para
       parameters_(parameters),
       parts_(parts_of(map, order_)),
       in_view_(spheres_of(map, order_, parts_),
-               {.looked_at_most = parameters.looked_at_most,
-                .chosen_most = parameters.surfaces_most,
-                .weight_most = parameters.triangles_most},
+               {.max_visited = parameters.max_visited,
+                .chosen_most = parameters.max_surfaces,
+                .weight_most = parameters.max_triangles},
                Preference::kNearest),
       corners_(map.vertices.size()),
       planes_(map.surfaces.size()),
@@ -113,7 +113,7 @@ const ViewedCorner& SurfaceRaster::corner(std::uint32_t vertex) {
 void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer) {
   place(X_WC, view);
   buffer.clear();
-  const double least_surface = 0.5 * parameters_.surface_least_cells / std::max(view_->fx, view_->fy);
+  const double least_surface = 0.5 * parameters_.min_surface_cells / std::max(view_->fx, view_->fy);
   for (const std::uint32_t chosen : in_view_.select(frustum_, least_surface)) {
     const Part& part = parts_[chosen];
     const std::uint32_t name = part.surface;

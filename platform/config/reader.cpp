@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "platform/config/renamed.h"
 #include "platform/config/spelling.h"
 #include "platform/config/tree.h"
 
@@ -104,8 +105,10 @@ struct Reader::State {
     for (const auto& [key, node] : *level().table) {
       const auto& known = level().known;
       if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+      const std::string_view now = renamed(key.str(), known);
       complain(line_of(node),
-               fmt::format("{}{} is unknown{}", level().prefix, printable(key.str()), hint(key.str(), known)));
+               fmt::format("{}{} is unknown{}", level().prefix, printable(key.str()),
+                           now.empty() ? hint(key.str(), known) : fmt::format("; it is called {} now", now)));
     }
   }
 };

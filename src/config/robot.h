@@ -85,7 +85,7 @@ struct Switches {
   std::string probe_lamp_line;
   std::string room_lamp_line;
   std::string fill_light_line;
-  double answer_within_s = 0.5;
+  double answer_timeout_s = 0.5;
   illumination::ProbeLampParameters probe_lamp;
 
   template <class Self, class Visitor>
@@ -99,7 +99,7 @@ struct Switches {
                "output that switches the room's lamp, also beside a switch in the wall: what changes with it is its "
                "shadow; empty: none");
     visit.text("fill_light_line", self.fill_light_line, "output that switches a light on faces; empty: none");
-    visit.number("answer_within_s", self.answer_within_s, {0.06, 10.0}, "s",
+    visit.number("answer_timeout_s", self.answer_timeout_s, {0.06, 10.0}, "s",
                  "a line that has not acknowledged by then counts as one that does not answer");
     visit.section("probe_lamp", self.probe_lamp, "The probe board's own lamp");
   }

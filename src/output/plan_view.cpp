@@ -22,17 +22,17 @@ const cv::Scalar kDark(30, 30, 30);
 const cv::Scalar kViewTint(120, 235, 255);
 
 double scale_of(const hal::Plan& plan, int height_px) {
-  return (height_px - 2 * kMargin_px) / std::max(0.1, plan.x_max_m - plan.x_min_m);
+  return (height_px - 2 * kMargin_px) / std::max(0.1, plan.max_x_m - plan.min_x_m);
 }
 
 }  // namespace
 
 PlanView::PlanView(const hal::Plan& plan, int height_px)
-    : x_max_m_(plan.x_max_m),
-      y_max_m_(plan.y_max_m),
+    : x_max_m_(plan.max_x_m),
+      y_max_m_(plan.max_y_m),
       px_per_m_(scale_of(plan, height_px)),
       view_angle_rad_(plan.view_angle_rad) {
-  const int width_px = 2 * kMargin_px + static_cast<int>(std::ceil((plan.y_max_m - plan.y_min_m) * px_per_m_));
+  const int width_px = 2 * kMargin_px + static_cast<int>(std::ceil((plan.max_y_m - plan.min_y_m) * px_per_m_));
   ground_.create(height_px, (width_px + 1) & ~1, CV_8UC3);
   draw_ground(plan);
 }

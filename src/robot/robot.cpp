@@ -211,12 +211,12 @@ Result<void> Robot::make_loops() {
         config_.task.lamp,
         parts.where ? std::make_shared<behavior::FreeFloor>(parts.where->map(), config_.task.lamp.floor) : nullptr,
         behavior::BoardPlace{board.position_m[0], board.position_m[2]},
-        behavior::KeptArea{area.enabled, area.x_min_m + kAreaMargin_m, area.x_max_m - kAreaMargin_m,
-                           area.y_min_m + kAreaMargin_m, area.y_max_m - kAreaMargin_m});
+        behavior::KeptArea{area.enabled, area.min_x_m + kAreaMargin_m, area.max_x_m - kAreaMargin_m,
+                           area.min_y_m + kAreaMargin_m, area.max_y_m - kAreaMargin_m});
   }
   std::array<bool, kLampLines> lamps{};
   std::ranges::transform(config_.switches.lamps(), lamps.begin(), [](const auto& name) { return !name.empty(); });
-  parts.switchboard = Switchboard(lamps, mode_.frame_period, seconds(config_.switches.answer_within_s));
+  parts.switchboard = Switchboard(lamps, mode_.frame_period, seconds(config_.switches.answer_timeout_s));
   auto schedule = runtime::Schedule::make(runtime::rows_of(config_.stage), mode_.frame_period);
   if (!schedule) return tl::unexpected(schedule.error());
 

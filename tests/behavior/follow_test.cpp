@@ -75,7 +75,7 @@ TEST(Follow, NeverBacksAwayUnlessToldSo) {
   EXPECT_EQ(repeat(blind, seen(kCentre_px, 200.0, 300.0, 90.0), 120).goal.forward_mps, 0.0);
 
   auto parameters = stated_size();
-  parameters.backward_limit_mps = 0.1;
+  parameters.max_backward_mps = 0.1;
   Follow brave(parameters, kAtTwoMetres);
   EXPECT_EQ(repeat(brave, seen(kCentre_px, 200.0, 300.0, 90.0), 120).goal.forward_mps, -0.1);
 }
@@ -86,7 +86,7 @@ TEST(Follow, TurnsFirstAndThenDrives) {
   EXPECT_NEAR(oblique.goal.forward_mps, 0.5 * (4.0 - 1.5 - 0.15) * (1.0 - std::atan(290.0 / 601.8) / 0.5), 1e-12);
 
   auto parameters = stated_size();
-  parameters.turn_first_rad = 0.3;
+  parameters.max_driving_bearing_rad = 0.3;
   Follow strict(parameters, kAtTwoMetres);
   const auto aside = repeat(strict, seen(kCentre_px + 290.0, 30.0, 60.0), 120);
   EXPECT_EQ(aside.goal.forward_mps, 0.0);
@@ -104,7 +104,7 @@ TEST(Follow, IsNotFooledByABoxThatTheImageCuts) {
   EXPECT_NEAR(at_bottom.distance_m, 1.0, 1e-12) << "by its width";
 
   auto parameters = stated_size();
-  parameters.backward_limit_mps = 0.1;
+  parameters.max_backward_mps = 0.1;
   Follow other(parameters, kAtTwoMetres);
   const auto at_corner = repeat(other, seen(10.0, 20.0, 30.0, 0.0), 60);
   EXPECT_EQ(at_corner.state, FollowState::kFollowing);
@@ -201,7 +201,7 @@ TEST(FollowFault, SenselessSightingIsNone) {
 TEST(FollowFault, LongGapIsNoJumpOfSpeed) {
   Follow follow(stated_size(), kAtTwoMetres);
   const auto decision = follow.decide(seen(kCentre_px, 20.0, 40.0), seconds(60.0));
-  EXPECT_LE(decision.goal.forward_mps, 0.3 * 0.3 + 1e-12) << "acceleration limit times stale_after_s";
+  EXPECT_LE(decision.goal.forward_mps, 0.3 * 0.3 + 1e-12) << "acceleration limit times max_box_age_s";
 }
 
 TEST(FollowFault, TimeRunsBack) {

@@ -137,7 +137,7 @@ TEST_F(Seek, MeasuresFromWhereTheLightComesFromHighEnough) {
   const double board_x = here_.x_m + 0.44 * std::cos(here_.heading_rad);
   const double board_y = here_.y_m + 0.44 * std::sin(here_.heading_rad);
   const double angle = std::atan2(std::hypot(lamp_x_ - board_x, lamp_y_ - board_y), 2.75 - 0.90);
-  EXPECT_LT(angle, (parameters_.good_angle_deg + 5.0) * kDegree);
+  EXPECT_LT(angle, (parameters_.max_locate_angle_deg + 5.0) * kDegree);
 }
 
 TEST_F(Seek, BacksOffAsFarAsItShouldWhereThereIsRoom) {
@@ -172,7 +172,7 @@ TEST_F(Seek, WithoutAShadowOnlyAmbientLightCounts) {
   make();
   ASSERT_TRUE(run_until(SeekState::kAmbient, 300.0));
   EXPECT_EQ(decision_.reason, SeekReason::kNoShadow);
-  EXPECT_EQ(decision_.places, parameters_.explore_places);
+  EXPECT_EQ(decision_.places, parameters_.max_explore_places);
   EXPECT_FALSE(hit_);
   run(5.0);
   EXPECT_EQ(decision_.goal.forward_mps, 0.0);
@@ -294,7 +294,7 @@ TEST_F(SeekFault, WithoutAPoseItHaltsAtOnceAndThenForGood) {
   EXPECT_TRUE(decision_.halt);
   EXPECT_EQ(decision_.goal.left_radps, 0.0);
   EXPECT_EQ(decision_.state, SeekState::kExploring) << "a moment without a pose is nothing";
-  run(parameters_.pose_lost_s + 0.2);
+  run(parameters_.max_pose_loss_s + 0.2);
   EXPECT_EQ(decision_.state, SeekState::kStopped);
   EXPECT_EQ(decision_.reason, SeekReason::kPoseLost);
   here_.known = true;

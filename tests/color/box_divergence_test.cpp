@@ -107,7 +107,7 @@ TEST(BoxDivergenceProperty, OfALargeBoxIsNearlyThatOfAllItsPixels) {
 TEST(BoxDivergence, OfTheLearnedBoxIsNearNothing) {
   std::mt19937 random(93);
   LearnParameters brightest;
-  brightest.lights.assumed = brightest.lights.highest;
+  brightest.lights.assumed = brightest.lights.max_level;
   for (int trial = 0; trial < 20; ++trial) {
     World world(random, 96, 80, brightest);
     const auto answer = BoxDivergence(world.model, Divergence::kJensenShannon).of(world.image, {20, 20, 30, 30});

@@ -201,8 +201,8 @@ TEST(IntegratedTrackerFault, ImagesThatCannotBeSearchedGiveNothing) {
 
 TEST(IntegratedTrackerFault, SizesThatCannotBe) {
   IntegratedParameters parameters;
-  parameters.ball.nearest_m = 3.0;
-  parameters.ball.farthest_m = 2.0;
+  parameters.ball.min_distance_m = 3.0;
+  parameters.ball.max_distance_m = 2.0;
   EXPECT_FALSE(IntegratedTracker::create(test::ball_model(), parameters, 320, 240, kFocal_px).has_value());
 }
 

@@ -31,8 +31,8 @@ TEST(LightGrid, LeavesOutGreenLamps) {
 
 TEST(LightGrid, AnEmptyRangeHasNone) {
   LightParameters parameters;
-  parameters.lowest = 0.9;
-  parameters.highest = 0.7;
+  parameters.min_level = 0.9;
+  parameters.max_level = 0.7;
   EXPECT_TRUE(light_grid(parameters).empty());
 }
 

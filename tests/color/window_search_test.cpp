@@ -90,7 +90,7 @@ TEST(WindowSearchProperty, FindsWhatTheExhaustiveSearchFinds) {
     parameters.weights = static_cast<BinWeights>(random() % 2);
     parameters.sizes = 1 + static_cast<int>(random() % 5);
     parameters.max_stride_px = 1.0 + static_cast<double>(random() % 8);
-    parameters.stride_share = 2 + static_cast<int>(random() % 7);
+    parameters.min_steps_per_side = 2 + static_cast<int>(random() % 7);
     auto fast = WindowSearch::create(learned->model, parameters, 96, 80).value();
     const ExhaustiveSearch slow(learned->model, parameters);
     ASSERT_EQ(fast.labels(), slow.labels());

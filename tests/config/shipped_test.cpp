@@ -33,9 +33,9 @@ TEST(ShippedRobots, AreSlowNeverBackwardsAndKeptIn) {
   for (const auto& file : robot_files()) {
     const auto robot = load_robot(file);
     ASSERT_TRUE(robot) << robot.error().message;
-    EXPECT_LE(robot->motion.forward_limit_mps, 0.5) << file;
-    EXPECT_EQ(robot->motion.backward_limit_mps, 0.0) << file << ": it is blind backwards";
-    EXPECT_EQ(robot->follow.backward_limit_mps, 0.0) << file;
+    EXPECT_LE(robot->motion.max_forward_mps, 0.5) << file;
+    EXPECT_EQ(robot->motion.max_backward_mps, 0.0) << file << ": it is blind backwards";
+    EXPECT_EQ(robot->follow.max_backward_mps, 0.0) << file;
     EXPECT_LE(robot->motion.goal_timeout_s, 0.150) << file;
     EXPECT_LE(robot->motion.feedback_timeout_s, 0.100) << file;
     EXPECT_TRUE(robot->motion.keep_in.enabled) << file;

@@ -28,8 +28,8 @@ cv::Mat canny(const cv::Mat& grey, const EdgeParameters& parameters) {
   cv::Sobel(blurred, dx, CV_16S, 1, 0);
   cv::Sobel(blurred, dy, CV_16S, 0, 1);
   cv::Mat edges;
-  cv::Canny(dx, dy, edges, parameters.least_contrast * EdgeDetector::kStepGain,
-            parameters.strong_contrast * EdgeDetector::kStepGain, true);
+  cv::Canny(dx, dy, edges, parameters.min_contrast * EdgeDetector::kStepGain,
+            parameters.min_strong_contrast * EdgeDetector::kStepGain, true);
   return edges;
 }
 
@@ -124,8 +124,8 @@ TEST(EdgePixelsGolden, SlopeOfASharpStep) {
 
 TEST(EdgePixelsProperty, WeakOnesStayOnlyWithStrongOnes) {
   EdgeParameters parameters;
-  parameters.least_contrast = 5.0;
-  parameters.strong_contrast = 20.0;
+  parameters.min_contrast = 5.0;
+  parameters.min_strong_contrast = 20.0;
   Bytes bytes(64 * 48, 100);
   for (std::size_t y = 0; y < 48; ++y) {
     for (std::size_t x = 20; x < 40; ++x)
@@ -201,8 +201,8 @@ TEST(EdgePixelsFault, MoreEdgesThanThereIsRoomFor) {
   Bytes bytes(64 * 48);
   for (auto& byte : bytes) byte = random() % 2 == 0 ? 0 : 255;
   EdgeParameters parameters;
-  parameters.least_contrast = 1.0;
-  parameters.strong_contrast = 1.0;
+  parameters.min_contrast = 1.0;
+  parameters.min_strong_contrast = 1.0;
   parameters.noise_factor = 0.0;
   EdgeDetector detector(parameters, 64, 48);
   EXPECT_LE(detector.find(bytes.data(), 64, 48, 64).size(), detector.capacity());

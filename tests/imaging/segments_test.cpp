@@ -210,7 +210,7 @@ TEST(SegmentsProperty, NoneInNoiseAlone) {
 
 TEST(SegmentsFault, BlackAndSaturatedImagesAndTooManySegments) {
   SegmentParameters parameters;
-  parameters.most_segments = 5;
+  parameters.max_segments = 5;
   SegmentFinder finder(parameters, kWidth, kHeight);
   EXPECT_TRUE(find(finder, Bytes(kWidth * kHeight, 0)).empty());
   EXPECT_TRUE(find(finder, Bytes(kWidth * kHeight, 255)).empty());

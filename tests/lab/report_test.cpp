@@ -92,7 +92,7 @@ TEST(MeanRow, SharesThatAreAllZeroStillHaveAnUpperBound) {
 TEST(Setting, PrintsTheHashOfTheConfigurationThatItMeasures) {
   Setting setting;
   const std::string shipped = setting.config_sha256();
-  setting.configuration.learn.lights.lowest = 0.5;
+  setting.configuration.learn.lights.min_level = 0.5;
 
   EXPECT_EQ(shipped.size(), 64U);
   EXPECT_NE(setting.config_sha256(), shipped);

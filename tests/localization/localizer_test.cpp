@@ -140,7 +140,7 @@ TEST(Localizer, FindsThePoseInAWidePrior) {
   const world::Map map = small_room();
   const geometry::Camera camera = room_camera();
   LocalizerParameters parameters;
-  parameters.starts_per_image = 0;
+  parameters.hypotheses_per_image = 0;
   Localizer localizer(map, camera, parameters);
   RandomNumbers random(12);
   int corrected = 0;
@@ -196,7 +196,7 @@ TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
   for (const int units : {1, 3, 8, 20}) {
     for (const double scale : {0.3, 1.0, 3.0}) {
       LocalizerParameters parameters;
-      parameters.starts_per_image = 0;
+      parameters.hypotheses_per_image = 0;
       Localizer localizer(map, camera, parameters);
       for (int image = 0; image < 30; ++image) {
         CountedBudget budget(units);
@@ -368,7 +368,7 @@ TEST_F(LocalizerFault, AMapOfAnotherRoomIsNotBelieved) {
   const Picture picture(map_, in_small_room(1.6, 2.4, 2.2), camera_, 1.5, 7);
   RandomNumbers random(14);
   LocalizerParameters parameters;
-  parameters.starts_per_image = 0;
+  parameters.hypotheses_per_image = 0;
   Localizer localizer(map_, camera_, parameters);
   int images = 0;
   const Correction answer = answer_of(localizer, picture.view(), prior_at(prior_.X_WC, PriorSigmas::floor()), images);

@@ -76,7 +76,8 @@ TEST_F(Tracking, BlackImagesLeaveThePredictionAndAreSaidToBeALoss) {
     const TrackedPose& now = see_black();
     EXPECT_EQ(now.correction.reason, Reason::kTooDark);
     EXPECT_LT(geometry::step_between(predicted, now.X_WC).norm(), 0.02);
-    EXPECT_EQ(now.state, i < PoseTrackerParameters{}.lost_after ? TrackState::kTracking : TrackState::kLost) << i;
+    EXPECT_EQ(now.state, i < PoseTrackerParameters{}.max_missed_corrections ? TrackState::kTracking : TrackState::kLost)
+        << i;
   }
   // The light comes back: found again, and told once.
   bool recovered = false;
@@ -101,10 +102,10 @@ TEST_F(Tracking, ABareWallIsNoLossUntilThePoseIsTooUncertain) {
     ASSERT_EQ(now.correction.reason, Reason::kTooFewEdges);
     state = now.state;
   }
-  EXPECT_GT(images, 3 * parameters.lost_after);
+  EXPECT_GT(images, 3 * parameters.max_missed_corrections);
   const geometry::Matrix6d& covariance = tracker_.now().covariance;
   const double place = std::sqrt(std::max(covariance(0, 0), covariance(1, 1)));
-  EXPECT_TRUE(place > parameters.lost_m || std::sqrt(covariance(5, 5)) > parameters.lost_deg * kDegree);
+  EXPECT_TRUE(place > parameters.max_sigma_m || std::sqrt(covariance(5, 5)) > parameters.max_sigma_deg * kDegree);
 }
 
 // A camera that images saw lean to one side, as one does whose mount was told wrong, leans on where they show nothing of it, and stays where it is;

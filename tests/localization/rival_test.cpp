@@ -38,8 +38,8 @@ class ARival : public ::testing::Test {
     const Belief belief(prior_at(followed_, kFollowed));
     alternation_.look(followed_);
     AlternateOptions options;
-    options.rounds = parameters_.iterations;
-    options.radius_px = static_cast<float>(parameters_.match_radius_least_px);
+    options.rounds = parameters_.max_iterations;
+    options.radius_px = static_cast<float>(parameters_.min_match_radius_px);
     const Estimate alone = alternation_.refine(followed_, belief, perception_.edges(), options, budget_);
     if (alone.solved) followed_ = rival_.better_than(alone, belief, perception_.edges(), budget_).solution.X_WC;
     return alone;

@@ -23,15 +23,15 @@ hal::Odometry at(double x_m, double y_m, double heading_rad) {
 MotionParameters with_reaction(double reaction_s) {
   MotionParameters limits;
   limits.reaction_s = reaction_s;
-  limits.backward_limit_mps = 0.4;
+  limits.max_backward_mps = 0.4;
   return limits;
 }
 
 TEST(MotionClamp, KeepsEveryGoalWithinTheLimits) {
   const MotionParameters limits;
-  EXPECT_EQ(clamp({9.0, 9.0}, limits).forward_mps, limits.forward_limit_mps);
-  EXPECT_EQ(clamp({9.0, 9.0}, limits).left_radps, limits.turn_limit_radps);
-  EXPECT_EQ(clamp({-9.0, -9.0}, limits).left_radps, -limits.turn_limit_radps);
+  EXPECT_EQ(clamp({9.0, 9.0}, limits).forward_mps, limits.max_forward_mps);
+  EXPECT_EQ(clamp({9.0, 9.0}, limits).left_radps, limits.max_turn_radps);
+  EXPECT_EQ(clamp({-9.0, -9.0}, limits).left_radps, -limits.max_turn_radps);
   EXPECT_EQ(clamp({-9.0, 0.0}, limits).forward_mps, 0.0) << "it is blind backwards";
   EXPECT_EQ(clamp({0.1, -0.2}, limits).forward_mps, 0.1);
   EXPECT_EQ(clamp({0.1, -0.2}, limits).left_radps, -0.2);
@@ -48,9 +48,9 @@ TEST(KeepIn, StopsExactlyAtTheEdge) {
   for (const double reaction_s : {0.0, 0.2}) {
     const auto limits = with_reaction(reaction_s);
     for (const double way_m : {0.001, 0.02, 0.05, 0.1}) {
-      const double v = speed_within_area(0.4, at(limits.keep_in.x_max_m - way_m, 0.0, 0.0), 0.01, limits);
+      const double v = speed_within_area(0.4, at(limits.keep_in.max_x_m - way_m, 0.0, 0.0), 0.01, limits);
       ASSERT_LT(v, 0.4);
-      EXPECT_NEAR(v * (reaction_s + 0.01) + v * v / (2.0 * limits.deceleration_limit_mps2), way_m, 1e-12);
+      EXPECT_NEAR(v * (reaction_s + 0.01) + v * v / (2.0 * limits.max_deceleration_mps2), way_m, 1e-12);
     }
   }
 }
@@ -82,10 +82,10 @@ TEST(KeepIn, IsReadyForATurnTowardsTheEdge) {
   EXPECT_EQ(speed_within_area(0.4, at(0.0, 4.8, 0.0), 0.0, limits), 0.4);
 
   limits.reaction_s = 1.0;
-  limits.deceleration_limit_mps2 = 3.0;
+  limits.max_deceleration_mps2 = 3.0;
   EXPECT_LT(speed_within_area(0.4, at(0.0, 4.9, 0.0), 0.0, limits), 0.2) << "it turns during the reaction too";
 
-  limits.turn_limit_radps = 0.0;
+  limits.max_turn_radps = 0.0;
   EXPECT_EQ(speed_within_area(0.4, along_the_edge, 0.0, limits), 0.4);
 }
 
@@ -125,16 +125,16 @@ TEST(KeepInProperty, BrakingAlongAnyArcEndsInside) {
   int slowed = 0;
   for (int trial = 0; trial < 5000; ++trial) {
     auto limits = with_reaction(draw(0.0, 0.3));
-    limits.deceleration_limit_mps2 = draw(0.3, 2.0);
+    limits.max_deceleration_mps2 = draw(0.3, 2.0);
     auto pose = at(draw(4.0, 5.0), draw(-5.0, -4.0), draw(-10.0, 10.0));
     const double asked = draw(-1.0, 1.0);
-    limits.turn_limit_radps = draw(0.0, 2.0);
+    limits.max_turn_radps = draw(0.0, 2.0);
     double v = speed_within_area(asked, pose, 0.0, limits);
     ASSERT_LE(std::abs(v), std::abs(asked));
     ASSERT_GE(v * asked, 0.0) << "never turned round";
     slowed += v != asked ? 1 : 0;
 
-    const double arc_turn = std::clamp(draw(-3.0, 3.0), -1.0, 1.0) * limits.turn_limit_radps;
+    const double arc_turn = std::clamp(draw(-3.0, 3.0), -1.0, 1.0) * limits.max_turn_radps;
     const double step_s = 1e-3;
     double unbraked_s = limits.reaction_s;
     while (v != 0.0) {
@@ -142,7 +142,7 @@ TEST(KeepInProperty, BrakingAlongAnyArcEndsInside) {
       pose.y_m += v * std::sin(pose.heading_rad) * step_s;
       pose.heading_rad += arc_turn * step_s;
       unbraked_s -= step_s;
-      const double loss = unbraked_s > 0.0 ? 0.0 : limits.deceleration_limit_mps2 * step_s;
+      const double loss = unbraked_s > 0.0 ? 0.0 : limits.max_deceleration_mps2 * step_s;
       v = std::copysign(std::max(0.0, std::abs(v) - loss), v);
     }
     const double slack = 2e-3;  // of the integration

@@ -84,16 +84,16 @@ struct Chance {
 
 MotionParameters draw_parameters(Chance& chance) {
   MotionParameters limits;
-  limits.forward_limit_mps = chance.draw(0.2, 1.0);
-  limits.backward_limit_mps = chance.draw(-0.2, 0.2);
-  limits.backward_limit_mps = std::max(0.0, limits.backward_limit_mps);
-  limits.acceleration_limit_mps2 = chance.draw(0.2, 2.0);
-  limits.deceleration_limit_mps2 = chance.draw(0.2, 2.0);
-  limits.turn_limit_radps = chance.draw(0.3, 2.0);
-  limits.turn_acceleration_limit_radps2 = chance.draw(0.5, 5.0);
+  limits.max_forward_mps = chance.draw(0.2, 1.0);
+  limits.max_backward_mps = chance.draw(-0.2, 0.2);
+  limits.max_backward_mps = std::max(0.0, limits.max_backward_mps);
+  limits.max_acceleration_mps2 = chance.draw(0.2, 2.0);
+  limits.max_deceleration_mps2 = chance.draw(0.2, 2.0);
+  limits.max_turn_radps = chance.draw(0.3, 2.0);
+  limits.max_turn_acceleration_radps2 = chance.draw(0.5, 5.0);
   limits.reaction_s = chance.draw(0.08, 0.3);  // covers the latest beat of this test
-  limits.keep_in.x_min_m = limits.keep_in.y_min_m = -1.0;
-  limits.keep_in.x_max_m = limits.keep_in.y_max_m = 1.0;
+  limits.keep_in.min_x_m = limits.keep_in.min_y_m = -1.0;
+  limits.keep_in.max_x_m = limits.keep_in.max_y_m = 1.0;
   return limits;
 }
 
@@ -103,17 +103,17 @@ void expect_within_limits(const MotionStatus& status, const hal::Twist& before, 
   constexpr double kSlack = 1e-9;
   const double elapsed_s = std::min(to_seconds(since_last), 0.020);
   const auto& [forward, turn] = status.commanded;
-  ASSERT_LE(forward, limits.forward_limit_mps);
-  ASSERT_GE(forward, -limits.backward_limit_mps);
-  ASSERT_LE(std::abs(turn), limits.turn_limit_radps);
+  ASSERT_LE(forward, limits.max_forward_mps);
+  ASSERT_GE(forward, -limits.max_backward_mps);
+  ASSERT_LE(std::abs(turn), limits.max_turn_radps);
   if (is_zero(status.commanded)) return;  // a stop is immediate
   const double gain = std::abs(forward) - std::abs(before.forward_mps);
-  ASSERT_LE(gain, limits.acceleration_limit_mps2 * elapsed_s + kSlack);
+  ASSERT_LE(gain, limits.max_acceleration_mps2 * elapsed_s + kSlack);
   if (!status.keep_in_slowed) {
-    ASSERT_GE(gain, -limits.deceleration_limit_mps2 * elapsed_s - kSlack);
+    ASSERT_GE(gain, -limits.max_deceleration_mps2 * elapsed_s - kSlack);
   }
   ASSERT_GE(forward * before.forward_mps, 0.0) << "never through zero in one step";
-  ASSERT_LE(std::abs(turn - before.left_radps), limits.turn_acceleration_limit_radps2 * elapsed_s + kSlack);
+  ASSERT_LE(std::abs(turn - before.left_radps), limits.max_turn_acceleration_radps2 * elapsed_s + kSlack);
 }
 
 struct Tally {
@@ -211,7 +211,7 @@ TEST(MotionLoopProperty, SluggishBaseStaysInItsArea) {
     const MotionParameters limits = draw_parameters(chance);
     Rig rig(limits);
     rig.drive->delay = seconds(limits.reaction_s * chance.draw(0.0, 1.0));
-    rig.drive->inertia_mps2 = limits.deceleration_limit_mps2;
+    rig.drive->inertia_mps2 = limits.max_deceleration_mps2;
     rig.arm_and_move({});
     for (int step = 0; step < 4000; ++step) {
       if (chance.once_in(100)) rig.goal = {chance.draw(-0.5, 1.5), chance.draw(-2.0, 2.0)};

@@ -159,7 +159,7 @@ TEST(MotionLoop, IgnoresAGoalOlderThanTheNewest) {
 
 TEST(MotionLoop, DoesNotDriveOutOfItsArea) {
   MotionParameters parameters;
-  parameters.keep_in.x_max_m = 0.5;
+  parameters.keep_in.max_x_m = 0.5;
   Rig rig(parameters);
   rig.arm_and_move({0.4, 0.0});
   const auto status = rig.steps(1500);
@@ -176,7 +176,7 @@ TEST(MotionLoop, DoesNotDriveOutOfItsArea) {
 // Where the last odometry was, the robot no longer is.
 TEST(MotionLoop, TakesLessNearTheEdgeWhenOdometryGrowsOld) {
   MotionParameters parameters;
-  parameters.keep_in.x_max_m = 1.15;
+  parameters.keep_in.max_x_m = 1.15;
   Rig rig(parameters);
   rig.arm_and_move({0.4, 0.0});
   const auto before = rig.step();

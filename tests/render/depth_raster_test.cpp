@@ -299,8 +299,8 @@ TEST(DepthRaster, AMapBeyondTheBudgetKeepsTheNearest) {
     }
   }
   RasterParameters parameters;
-  parameters.edges_most = 400;
-  parameters.looked_at_most = 3000;
+  parameters.max_edges = 400;
+  parameters.max_visited = 3000;
   DepthRaster raster(map, parameters);
   std::vector<VisiblePiece> pieces;
   raster.look(looking_from({0.0, 0.0, 1.5}, {6.0, 0.0, 0.0}), Camera(), pieces);
@@ -375,9 +375,9 @@ TEST(DepthRasterProperty, BeyondTheBudgetHiddenIsHiddenAndTheLongestNearOnesStay
     }
   }
   RasterParameters parameters;
-  parameters.surfaces_most = 300;
-  parameters.triangles_most = 500;
-  parameters.edges_most = 200;
+  parameters.max_surfaces = 300;
+  parameters.max_triangles = 500;
+  parameters.max_edges = 200;
   DepthRaster raster(map, parameters);
   const Camera camera;
   double ours_px = 0.0;

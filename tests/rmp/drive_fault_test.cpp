@@ -212,7 +212,7 @@ TEST(RmpDriveFault, OneRefusedCommandIsNoLostLink) {
   // The queue takes ten frames; the eleventh and the twelfth are refused, then the cable is back.
   setup.bus_script = {{.trouble = BusTrouble::kUnplugged, .from = at(2.005), .to = at(2.095)}};
   setup.drive.feedback_timeout_s = 0.3;
-  setup.drive.refusals_to_give_up = 3;
+  setup.drive.max_refusals = 3;
   Rig rig(setup);
   EXPECT_TRUE(rig.run_until(3.0, kForward));
   EXPECT_EQ(rig.drive.fault(), DriveFault::kNone);

@@ -99,7 +99,7 @@ TEST(SimulatedRmp, SendsItsSetAHundredTimesASecondInTheOrderOfARealBus) {
 
 TEST(SimulatedRmp, LeansIntoItsAccelerationAndSettles) {
   BaseParameters parameters;
-  parameters.acceleration_limit_mps2 = 0.4;
+  parameters.max_acceleration_mps2 = 0.4;
   Bench bench(parameters);
   double most = 0.0, least = 0.0, least_x = 0.0;
   for (const auto& state : bench.drive_until(2.5, velocity(0.4))) {
@@ -137,7 +137,7 @@ TEST(SimulatedRmp, SpeedNeverChangesFasterThanItsLimitAllowsATractor) {
   states.insert(states.end(), back.begin(), back.end());
   for (std::size_t i = 1; i < states.size(); ++i) {
     const double step = states[i].velocity.forward_mps - states[i - 1].velocity.forward_mps;
-    ASSERT_LE(std::abs(step), parameters.acceleration_limit_mps2 * 0.001 * 1.0001) << i;
+    ASSERT_LE(std::abs(step), parameters.max_acceleration_mps2 * 0.001 * 1.0001) << i;
   }
   EXPECT_NEAR(states.back().velocity.forward_mps, -1.0, 0.02);
 }

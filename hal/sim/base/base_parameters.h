@@ -18,9 +18,9 @@ inline constexpr std::array kBaseModeNames = {Named<BaseMode>{"disabled", BaseMo
 /// drives.
 struct BaseParameters {
   BaseMode mode = BaseMode::kBalance;
-  double acceleration_limit_mps2 = 3.5;
+  double max_acceleration_mps2 = 3.5;
   double velocity_lag_s = 0.03;
-  double turn_acceleration_limit_radps2 = 6.0;
+  double max_turn_acceleration_radps2 = 6.0;
   double turn_lag_s = 0.08;
   double turn_knee_mps = 1.57;
   double balance_rate_radps = 14.0;
@@ -41,10 +41,9 @@ struct BaseParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("mode", self.mode, kBaseModeNames, "operational mode when it is switched on");
-    visit.number("acceleration_limit_mps2", self.acceleration_limit_mps2, {0.1, 5.0}, "m/s²",
-                 "steepest change of speed");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.1, 5.0}, "m/s²", "steepest change of speed");
     visit.number("velocity_lag_s", self.velocity_lag_s, {0.005, 1.0}, "s", "time constant of the speed");
-    visit.number("turn_acceleration_limit_radps2", self.turn_acceleration_limit_radps2, {0.1, 50.0}, "rad/s²",
+    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 50.0}, "rad/s²",
                  "steepest change of the turn rate");
     visit.number("turn_lag_s", self.turn_lag_s, {0.005, 1.0}, "s", "time constant of the turn rate");
     visit.number(

@@ -63,7 +63,7 @@ void SegwayBody::step(const BodyTarget& target) {
 
 void SegwayBody::drive(const BodyTarget& target) {
   wanted_mps_ =
-      approach(wanted_mps_, target.velocity.forward_mps, p_.velocity_lag_s, target.acceleration_limit_mps2, kStep_s);
+      approach(wanted_mps_, target.velocity.forward_mps, p_.velocity_lag_s, target.max_acceleration_mps2, kStep_s);
   smooth_mps_ += (wanted_mps_ - smooth_mps_) * (kStep_s / p_.velocity_lag_s);
   if (target.balances) {
     const double w = p_.balance_rate_radps;
@@ -79,7 +79,7 @@ void SegwayBody::drive(const BodyTarget& target) {
   }
   const double speed = std::abs(speed_mps_);
   const double turn = target.velocity.left_radps * (speed > p_.turn_knee_mps ? p_.turn_knee_mps / speed : 1.0);
-  turn_radps_ = approach(turn_radps_, turn, p_.turn_lag_s, p_.turn_acceleration_limit_radps2, kStep_s);
+  turn_radps_ = approach(turn_radps_, turn, p_.turn_lag_s, p_.max_turn_acceleration_radps2, kStep_s);
 }
 
 void SegwayBody::roll_out() {

@@ -31,7 +31,7 @@ struct BodyTarget {
   bool motors = false;   ///< without them it brakes, on its stand, upright.
   bool balances = true;  ///< else it stands on more than two wheels and does not pitch.
   hal::Twist velocity;
-  double acceleration_limit_mps2 = 1.5;
+  double max_acceleration_mps2 = 1.5;
 };
 
 /// Wheels, body and ground of a two-wheeled robot that balances.

@@ -165,7 +165,7 @@ void SimulatedRmp::aim() {
   const bool commanded = order_at_ && now_ - *order_at_ < kCommandTimeout;
   target_.motors = powered_ && moves && !stopped;
   target_.balances = mode_ == BaseMode::kBalance;
-  target_.acceleration_limit_mps2 = parameters_.acceleration_limit_mps2 * settings_.max_acceleration / 16.0;
+  target_.max_acceleration_mps2 = parameters_.max_acceleration_mps2 * settings_.max_acceleration / 16.0;
   target_.velocity = {};
   if (!commanded) return;
   target_.velocity = {.forward_mps = order_.forward_mps(scales_) * settings_.max_velocity / 16.0,

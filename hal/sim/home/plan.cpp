@@ -53,10 +53,10 @@ hal::Plan make_plan(const Scene& scene, double ceiling_m) {
     for (const auto& corner : layer.piece.corners_m) area.extend(Eigen::Vector2f(corner[0], corner[1]));
   }
   if (!area.isEmpty()) {
-    plan.x_min_m = static_cast<double>(area.min().x());
-    plan.x_max_m = static_cast<double>(area.max().x());
-    plan.y_min_m = static_cast<double>(area.min().y());
-    plan.y_max_m = static_cast<double>(area.max().y());
+    plan.min_x_m = static_cast<double>(area.min().x());
+    plan.max_x_m = static_cast<double>(area.max().x());
+    plan.min_y_m = static_cast<double>(area.min().y());
+    plan.max_y_m = static_cast<double>(area.max().y());
   }
   return plan;
 }

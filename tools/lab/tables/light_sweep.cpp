@@ -204,7 +204,7 @@ void sweep_lower_bound(const Setting& setting, int trials, Report& report) {
     std::array<Curve, 2> curves;
     for (int tenths = 2; tenths <= 6; ++tenths) {
       Setting wider = setting;
-      wider.configuration.learn.lights.lowest = tenths / 10.0;
+      wider.configuration.learn.lights.min_level = tenths / 10.0;
       setting.progress(fmt::format("{}, object absent, lower bound {:.1f}", contender.name, tenths / 10.0));
       const auto finds = finds_without_object(wider, contender, trials);
       for (std::size_t i = 0; i < thresholds.size(); ++i) {
