@@ -43,9 +43,9 @@ class LampRun : public ::testing::Test {
             {"\ncache = true", "\ncache = false"},
             {"\nx_m = 2.2", "\nx_m = 4.6"},
             {"\ny_m = 3.3", "\ny_m = 3.2"},
-            {"\nlocate_least_s = 3.0", "\nlocate_least_s = 0.3"},
-            {"\nlocate_most_s = 10.0", "\nlocate_most_s = 0.6"},
-            {"\nprobes_lost_s = 4.0", "\nprobes_lost_s = 0.4"},
+            {"\nmin_locate_s = 3.0", "\nmin_locate_s = 0.3"},
+            {"\nmax_locate_s = 10.0", "\nmax_locate_s = 0.6"},
+            {"\nmax_probes_loss_s = 4.0", "\nmax_probes_loss_s = 0.4"},
             {"../scenarios/home-lamp.toml", scratch_ / "scenario.toml"},
             {"../models", CGSR_SOURCE_DIR "/config/models"}});
     for (std::size_t at = 0; (at = robot_.find("\"../", at)) != std::string::npos;) {
