@@ -1,5 +1,4 @@
 // cgsr localize on rendered images and on those that others made.
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,6 +13,7 @@
 #include "pipeline/world/load.h"
 #include "src/input/pose_file.h"
 #include "tests/app/program.h"
+#include "tests/support/real_data.h"
 
 namespace cgsr::app::testing {
 namespace {
@@ -212,14 +212,8 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
 
 // A cube on a table: the map knows nothing of what fills most of the image. The camera and the first pose are those that came with it.
 TEST(LocalizeCommand, FollowsTheRecordedCube) {
-  const char* data = std::getenv("CGSR_DATA");
-  if (data == nullptr) {
-    const char* require = std::getenv("CGSR_REQUIRE_DATA");
-    if (require != nullptr && std::string(require) == "1") FAIL() << "CGSR_DATA is not set";
-    GTEST_SKIP() << "SKIPPED: no data";
-  }
-  const std::filesystem::path folder = std::filesystem::path(data) / "localization" / "cube";
-  ASSERT_TRUE(std::filesystem::exists(folder)) << "CGSR_DATA does not lead to localization/cube";
+  CGSR_NEEDS_REAL_DATA("localization/cube");
+  const std::filesystem::path folder = test::real_data("localization/cube");
   const ScratchFolder scratch;
   write_text(scratch / "camera.yaml",
              "image_width: 640\nimage_height: 480\ncamera_name: cube\ncamera_matrix:\n  rows: 3\n  cols: 3\n"

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,6 +10,7 @@
 #include "pipeline/color/exhaustive_search.h"
 #include "pipeline/color/window_search.h"
 #include "tests/color/scene.h"
+#include "tests/support/real_data.h"
 
 namespace cgsr::color {
 namespace {
@@ -46,15 +46,9 @@ test::Painting picture(const std::string& path) {
 class SearchOnVideoContract : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("CGSR_DATA");
-    const char* require = std::getenv("CGSR_REQUIRE_DATA");
-    const bool required = require != nullptr && std::string(require) == "1";
-    if (data != nullptr) folder_ = std::filesystem::path(data) / "tracking" / GetParam();
-    if (data != nullptr && std::filesystem::exists(folder_)) return;
-    if (required) {
-      FAIL() << "there is no " << folder_ << ": CGSR_DATA does not lead to the sequences";
-    }
-    GTEST_SKIP() << "no data: CGSR_DATA is not set";
+    const std::string name = std::string("tracking/") + GetParam();
+    CGSR_NEEDS_REAL_DATA(name);
+    folder_ = test::real_data(name);
   }
   std::filesystem::path folder_;
 };

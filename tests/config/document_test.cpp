@@ -8,6 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/scratch_folder.h"
+
 namespace cgsr::config {
 namespace {
 
@@ -73,12 +75,12 @@ TEST(DocumentFault, SaysWhyAFileCannotBeRead) {
 }
 
 TEST(Document, LoadsAFile) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "document_test.toml";
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "document_test.toml";
   std::ofstream(file) << "a = 1\n";
   const auto document = Document::load(file);
   ASSERT_TRUE(document) << document.error().message;
   EXPECT_EQ(document->name(), file.string());
-  std::filesystem::remove(file);
 }
 
 TEST(PathBeside, StartsAtTheFolderOfTheFile) {

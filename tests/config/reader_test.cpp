@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/config/sample.h"
+#include "tests/support/scratch_folder.h"
 
 namespace cgsr::config {
 namespace {
@@ -143,7 +144,8 @@ from_m = inf
 }
 
 TEST(Reader, ReadsAFile) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "reader_test.toml";
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "reader_test.toml";
   std::ofstream(file) << kWholeSample;
   const auto sample = read_file<Sample>(file, Missing::kIsAnError);
   ASSERT_TRUE(sample) << sample.error().message;

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/calib3d.hpp>
 
 namespace cgsr::geometry {
 namespace {
@@ -18,14 +20,32 @@ Camera webcam() {
   return camera;
 }
 
-TEST(CameraGolden, ProjectsAsOpenCvDoes) {
-  // cv::projectPoints with the same numbers.
-  const auto pixel = webcam().pixel_of({0.4, -0.3, 1.0});
-  ASSERT_TRUE(pixel.has_value());
-  const double r2 = 0.25;
-  const double radial = 1.0 - 0.075 * r2 + 0.045 * r2 * r2 + 0.002 * r2 * r2 * r2;
-  EXPECT_NEAR(pixel->x(), 601.8 * (0.4 * radial + 2 * 0.0006 * 0.4 * -0.3 - 0.0004 * (r2 + 2 * 0.16)) + 319.5, 1e-9);
-  EXPECT_NEAR(pixel->y(), 579.4 * (-0.3 * radial + 0.0006 * (r2 + 2 * 0.09) + 2 * -0.0004 * 0.4 * -0.3) + 239.5, 1e-9);
+double between(double low, double high, std::mt19937& random) {
+  return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+}
+
+TEST(CameraProperty, ProjectsAsOpenCvDoes) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 500; ++i) {
+    Camera camera = webcam();
+    camera.fx_px = between(300, 900, random);
+    camera.fy_px = between(300, 900, random);
+    camera.k1 = between(-0.1, 0.1, random);
+    camera.p1 = between(-0.002, 0.002, random);
+    camera.p2 = between(-0.002, 0.002, random);
+    const cv::Matx33d K(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
+    const cv::Vec<double, 5> lens(camera.k1, camera.k2, camera.p1, camera.p2, camera.k3);
+    const double depth_m = between(0.3, 9.0, random);
+    const Eigen::Vector3d p(depth_m * between(-0.5, 0.5, random), depth_m * between(-0.4, 0.4, random), depth_m);
+
+    std::vector<cv::Point2d> theirs;
+    cv::projectPoints(std::vector<cv::Point3d>{{p.x(), p.y(), p.z()}}, cv::Vec3d(), cv::Vec3d(), K, lens, theirs);
+    const auto ours = camera.pixel_of(p);
+
+    ASSERT_TRUE(ours.has_value());
+    EXPECT_NEAR(ours->x(), theirs[0].x, 1e-9);
+    EXPECT_NEAR(ours->y(), theirs[0].y, 1e-9);
+  }
 }
 
 TEST(CameraProperty, UndoesItsOwnLens) {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <random>
@@ -16,6 +15,7 @@
 
 #include "hal/replay/bgr_to_yuyv.h"
 #include "tests/hal/recordings.h"
+#include "tests/support/real_data.h"
 
 namespace cgsr::hal {
 namespace {
@@ -481,24 +481,21 @@ TEST(ReplayCameraStress, TwoReadersAsFastAsPossibleLoseNothing) {
 
 // Real videos and folders, where they are at hand.
 TEST(ReplayCamera, ReadsTheRealRecordings) {
-  const char* data = std::getenv("CGSR_DATA");
-  if (data == nullptr) {
-    const char* require = std::getenv("CGSR_REQUIRE_DATA");
-    if (require != nullptr && std::string(require) == "1") FAIL() << "CGSR_DATA is not set";
-    GTEST_SKIP() << "no data: CGSR_DATA is not set";
-  }
-  ReplayCamera coke(replay(std::string(data) + "/tracking/coke/img"));
+  CGSR_NEEDS_REAL_DATA("tracking/coke/img");
+  CGSR_NEEDS_REAL_DATA("people/vtest/vtest.avi");
+  const std::string coke_folder = test::real_data("tracking/coke/img");
+  ReplayCamera coke(replay(coke_folder));
   const auto mode = coke.start();
   ASSERT_TRUE(mode) << mode.error().message;
   EXPECT_EQ(mode->width_px, 640);
   EXPECT_EQ(mode->height_px, 480);
   int images = 0;
   while (coke.next_image(MonoTime::max())) ++images;
-  const std::filesystem::directory_iterator files(std::string(data) + "/tracking/coke/img");
+  const std::filesystem::directory_iterator files(coke_folder);
   EXPECT_EQ(images, std::distance(begin(files), end(files)));
   EXPECT_EQ(coke.last_problem(), "");
 
-  auto some = replay(std::string(data) + "/people/vtest/vtest.avi");
+  auto some = replay(test::real_data("people/vtest/vtest.avi"));
   some.count = 100;
   ReplayCamera walkers(some);
   const auto video = walkers.start();

@@ -1,5 +1,4 @@
 // Photographs of an upright pencil and its shadow: the only real ones of chapter 5.
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "pipeline/geometry/pose.h"
 #include "pipeline/illumination/lamp.h"
 #include "pipeline/illumination/rod_shadow.h"
+#include "tests/support/real_data.h"
 
 namespace cgsr::illumination {
 namespace {
@@ -24,11 +24,9 @@ using nlohmann::json;
 class Pencil : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("CGSR_DATA");
-    if (data == nullptr) GTEST_SKIP() << "SKIPPED: no data";
-    folder_ = std::filesystem::path(data) / "shadow" / "pencil";
+    CGSR_NEEDS_REAL_DATA("shadow/pencil/GROUND_TRUTH.json");
+    folder_ = test::real_data("shadow/pencil");
     std::ifstream file(folder_ / "GROUND_TRUTH.json");
-    if (!file) GTEST_SKIP() << "SKIPPED: no data";
     truth_ = json::parse(file);
     const json& K = truth_["K"];
     camera_.width_px = 1920;

@@ -10,6 +10,7 @@
 
 #include "tests/imaging/rendered_edges.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/real_data.h"
 
 namespace cgsr::imaging {
 namespace {
@@ -73,11 +74,10 @@ TEST(EdgePixelsProperty, AreCannysOnDrawnImages) {
 }
 
 TEST(EdgePixelsProperty, AreCannysOnRealImages) {
-  const char* data = std::getenv("CGSR_DATA");
-  if (data == nullptr) GTEST_SKIP() << "SKIPPED: no data";
+  CGSR_NEEDS_REAL_DATA("localization/cube/img");
   int images = 0;
   for (const int number : {0, 40, 80}) {
-    const auto file = std::filesystem::path(data) / cv::format("localization/cube/img/image%04d.png", number);
+    const auto file = test::real_data("localization/cube/img") / cv::format("image%04d.png", number);
     const cv::Mat image = cv::imread(file.string(), cv::IMREAD_GRAYSCALE);
     if (image.empty()) continue;
     cv::Mat half;

@@ -7,11 +7,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scratch_folder.h"
+
 namespace cgsr::lab {
 namespace {
 
-std::filesystem::path written(const std::string& name, const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / name;
+std::filesystem::path written(const test::ScratchFolder& scratch, const std::string& name, const std::string& text) {
+  const auto path = scratch / name;
   std::ofstream(path) << text;
   return path;
 }
@@ -75,7 +77,8 @@ TEST(Score, NothingVisibleIsZeroNotNaN) {
 }
 
 TEST(ReadTruth, TakesEverySeparatorPolygonsAndWhatIsNotVisible) {
-  const auto truth = read_truth(written("truth_separators.txt",
+  const test::ScratchFolder scratch;
+  const auto truth = read_truth(written(scratch, "truth_separators.txt",
                                         "10,20,30,40\n10\t20\t30\t40\n10 20  30 40\n 10; 20; 30; 40 \r\n"
                                         "5,5,15,6,14,16,4,15\n"
                                         "nan,nan,nan,nan\n5,5,0,5\n\nno box\n1,2,3\n"));
@@ -95,8 +98,9 @@ TEST(ReadTruth, NamesTheFileThatIsNotThere) {
 }
 
 TEST(ReadTrack, SkipsTheHeaderAndTakesMissingImagesAsNotFound) {
+  const test::ScratchFolder scratch;
   const auto track = read_track(
-      written("track_rows.csv",
+      written(scratch, "track_rows.csv",
               "frame,found,x,y,width,height,divergence\n"
               "0,1,10,10,40,20,0.1\n2,0,10,10,40,20\n3.0,1,2,2,4,4\n5,0,,,,\n6,1,nan,1,1,1\n7,1,1,1,-1,1\n8,1,1\n"));
 
@@ -110,11 +114,12 @@ TEST(ReadTrack, SkipsTheHeaderAndTakesMissingImagesAsNotFound) {
 // A whole case with every figure worked out by hand: visible are images 0 to 3 and 7; image 0 is hit, image 1 by half, 2 and 7 are
 // missed, 3 is a small box inside; image 4 holds a box where nothing is visible.
 TEST(ScoreGolden, HandMadeCase) {
-  const auto truth = read_truth(written("truth_golden.txt",
+  const test::ScratchFolder scratch;
+  const auto truth = read_truth(written(scratch, "truth_golden.txt",
                                         "10,10,40,20\n10\t10\t40\t20\n10 10 40 20\n0,0,10,0,10,10,0,10\n"
                                         "nan,nan,nan,nan\n5,5,0,5\n\n20,20,10,10\n"));
   const auto track =
-      read_track(written("track_golden.csv",
+      read_track(written(scratch, "track_golden.csv",
                          "frame,found,x,y,width,height,divergence\n0,1,10,10,40,20,0.1\n1,1,30,10,40,20,0.1\n"
                          "2,0,10,10,40,20\n3,1,2,2,4,4\n4,1,1,1,5,5\n5,0,,,,\n7,1,nan,1,1,1\n"));
   ASSERT_TRUE(truth && track);

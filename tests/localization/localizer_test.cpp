@@ -273,16 +273,30 @@ TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
   }
   const Pose truth = in_small_room(-0.2, 0.1, 0.05);
   const Picture picture(b.map, truth, room_camera(), 1.0, 3);
-  RandomNumbers random(13);
-  const Prior prior = drawn_prior(truth, kTracking, random);
-  for (const Method method : {Method::kStronger, Method::kGlCorrect, Method::kPaper}) {
-    LocalizerParameters parameters;
-    parameters.method = method;
-    Localizer localizer(b.map, room_camera(), parameters);
-    UnlimitedBudget budget;
-    const Correction answer = localizer.correct(picture.view(), prior, budget);
-    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
-    EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.06) << static_cast<int>(method);
+  struct Claim {
+    Method method;
+    double left;  // of the prior's error, at most
+  };
+  // The dissertation's own solver takes full steps: here it only must not make it worse.
+  for (const auto [method, left] :
+       {Claim{Method::kStronger, 0.5}, Claim{Method::kGlCorrect, 0.3}, Claim{Method::kPaper, 1.0}}) {
+    RandomNumbers random(13);
+    double before_m = 0.0;
+    double after_m = 0.0;
+    constexpr int kTrials = 8;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const Prior prior = drawn_prior(truth, kTracking, random);
+      LocalizerParameters parameters;
+      parameters.method = method;
+      Localizer localizer(b.map, room_camera(), parameters);
+      UnlimitedBudget budget;
+      const Correction answer = localizer.correct(picture.view(), prior, budget);
+      EXPECT_TRUE(answer.corrected) << static_cast<int>(method) << ", trial " << trial << ": "
+                                    << name_of(answer.reason);
+      before_m += error_of(truth, prior.X_WC).position_m / kTrials;
+      after_m += error_of(truth, answer.X_WC).position_m / kTrials;
+    }
+    EXPECT_LT(after_m, left * before_m) << static_cast<int>(method) << ": it was " << before_m << " m off before";
   }
 }
 

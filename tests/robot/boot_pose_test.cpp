@@ -10,6 +10,8 @@
 #include <opencv2/aruco.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "tests/support/scratch_folder.h"
+
 namespace cgsr::robot {
 namespace {
 
@@ -83,8 +85,8 @@ TEST(BootPose, AnotherMarkerOrNoneSaysNothing) {
 }
 
 TEST(BootPose, WhatTheLastRunLeftComesFirst) {
-  const auto file = std::filesystem::temp_directory_path() / "cgsr-last-pose-test.csv";
-  std::filesystem::remove(file);
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "last-pose.csv";
   config::StartPose start;
   start.x_m = 1.0;
   start.file = file.string();
@@ -97,18 +99,17 @@ TEST(BootPose, WhatTheLastRunLeftComesFirst) {
   ASSERT_TRUE(with) << with.error().message;
   EXPECT_LT(((geometry::pose_on_floor(4.0, -2.0, 0.5) * mount()).translation() - with->prior.X_WC.translation()).norm(),
             1e-5);
-  std::filesystem::remove(file);
 }
 
 TEST(BootPoseFault, ADamagedFileIsSaidWithItsLine) {
-  const auto file = std::filesystem::temp_directory_path() / "cgsr-bad-pose-test.csv";
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "bad-pose.csv";
   std::ofstream(file) << "tx,ty,tz,qw,qx,qy,qz\n1,2,nan,1,0,0,0\n";
   config::StartPose start;
   start.file = file.string();
   const auto boot = boot_pose(start, {}, mount(), {});
   ASSERT_FALSE(boot);
   EXPECT_NE(boot.error().message.find(":2"), std::string::npos) << boot.error().message;
-  std::filesystem::remove(file);
 }
 
 }  // namespace

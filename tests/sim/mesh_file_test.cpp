@@ -9,6 +9,7 @@
 #include "hal/sim/scene/map_count.h"
 #include "hal/sim/scene/portable_math.h"
 #include "hal/sim/scene/scene.h"
+#include "tests/support/scratch_folder.h"
 
 namespace cgsr::sim {
 namespace {
@@ -17,17 +18,13 @@ using testing::HasSubstr;
 
 class MeshFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-  }
   std::filesystem::path write(const std::string& name, const std::string& text) {
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
 
  private:
-  std::filesystem::path folder_;
+  cgsr::test::ScratchFolder folder_;
 };
 
 const std::string kCube =

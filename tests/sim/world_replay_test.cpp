@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,11 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kRate_hz = 30.0;
-#ifdef CGSR_WHOLE_SCRIPTS
-constexpr int kImages = 1200;
-#else
-constexpr int kImages = 60;
-#endif
+const int kImages = std::getenv("CGSR_WHOLE_SCRIPTS") != nullptr ? 1200 : 60;
 
 std::vector<std::string> world_names() {
   std::vector<std::string> names;

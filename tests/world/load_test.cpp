@@ -13,6 +13,7 @@
 
 #include "pipeline/world/cao.h"
 #include "pipeline/world/compact.h"
+#include "tests/world/map_texts.h"
 #include "tests/world/scratch.h"
 #include "tests/world/small_maps.h"
 
@@ -21,15 +22,6 @@ namespace {
 
 using testing::HasSubstr;
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-std::string text_of(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
 /// The message that a file of this text is refused with; empty when it is not.
 std::string refusal(const std::string& name, const std::string& text) {
   const ScratchFolder scratch;
@@ -37,67 +29,6 @@ std::string refusal(const std::string& name, const std::string& text) {
   const auto map = load_map(scratch / name);
   return map ? "" : map.error().message;
 }
-
-const char* const kObj = R"(# an L of two materials, and a wall
-mtllib small.mtl
-o floor
-usemtl wood
-v 0 0 0
-v 3 0 0
-v 3 1 0
-v 1 1 0
-v 1 3 0
-v 0 3 0
-f 1 2 3 4 5 6
-o wall
-usemtl paint
-v 0 0 0
-v 3 0 0
-v 3 0 2
-v 0 0 2
-f 7 8 9 10
-usemtl nowhere
-v 5 5 0
-v 6 5 0
-v 6 6 0
-f -3 -2 -1
-)";
-const char* const kMtl = "newmtl wood\nKd 0.6 0.4 0.2\nnewmtl paint\nKd 0.9 0.9 0.9\n";
-
-const char* const kCao = R"(V1
-# 3D points
-5
-0 0 0
-1 0 0 # a comment
-1 1 0
-0 1 0 name=corner
-0.5 0.5 1
-# 3D lines
-6
-0 1
-1 2
-2 3 name=back useLod=true minLineLengthThreshold=50
-3 0
-0 4
-1 3
-# faces from lines
-1
-4 0 1 2 3 name=base
-# faces from points
-1
-3 0 1 4
-0
-0
-)";
-
-const char* const kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
-"nodes":[{"mesh":0,"translation":[0,1,0]}],
-"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],
-"materials":[{"name":"green","pbrMetallicRoughness":{"baseColorFactor":[0.0,0.5,0.0,1.0]}}],
-"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[2,0,1]},
-{"bufferView":1,"componentType":5123,"count":6,"type":"SCALAR"}],
-"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}],
-"buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAQAAAAAAAAIA/AAAAAAAAAAAAAIA/AAABAAIAAAACAAMA"}]})";
 
 TEST(LoadMap, ObjWithItsMaterials) {
   const ScratchFolder scratch;
@@ -247,16 +178,6 @@ TEST(LoadMapFault, WhatIsNoMapIsRefusedWithItsName) {
   EXPECT_THAT(missing.error().message, HasSubstr("/nowhere/at/all.obj: No such file"));
 }
 
-Map small_map() {
-  Maker maker;
-  maker.material("floor", 0.4F);
-  maker.material("box", 0.9F);
-  maker.level(-2, -2, 2, 2, 0, 0);
-  maker.box({0, 0, 0.001F}, {0.5F, 0.4F, 0.3F}, 1);
-  maker.line({-1, -1, 0}, {1, -1, 0});
-  return maker.map();
-}
-
 TEST(CompactMap, ComesBackAsItWas) {
   const ScratchFolder scratch;
   const Map map = small_map();
@@ -358,72 +279,6 @@ TEST(CompactMapFault, NonsenseUnderARightChecksumIsRefused) {
   map.surfaces[1].normal.setZero();
   EXPECT_THAT(refused(map), HasSubstr("normal"));
 }
-
-// Mutated files are read or refused, and what is read is sound; nothing crashes.
-class LoadMapFuzz : public testing::TestWithParam<const char*> {};
-
-TEST_P(LoadMapFuzz, MutatedFilesAreReadOrRefused) {
-  const ScratchFolder scratch;
-  const std::string name = GetParam();
-  std::string seed = kObj;
-  if (name == "a.cao") seed = kCao;
-  if (name == "a.gltf") seed = kGltf;
-  if (name == "a.cgsrmap") {
-    ASSERT_TRUE(write_compact(small_map(), scratch / name));
-    seed = text_of(scratch / name);
-  }
-  write(scratch / "small.mtl", kMtl);
-  std::mt19937 random(11);
-  int read = 0;
-  constexpr int kTrials = 500;
-  for (int trial = 0; trial < kTrials; ++trial) {
-    std::string text = seed;
-    const std::uint32_t changes = 1 + random() % 4U;
-    for (std::uint32_t i = 0; i < changes; ++i) {
-      const std::size_t at = random() % text.size();
-      switch (random() % 6U) {
-        case 0:
-          text[at] = static_cast<char>(random() % 256U);
-          break;
-        case 1:
-          text[at] = "0123456789-+.e {}[]\",:\n"[random() % 23U];
-          break;
-        case 2:
-          text.erase(at, 1 + random() % 8U);
-          break;
-        case 3:
-          text.insert(at, text.substr(random() % text.size(), random() % 12U));
-          break;
-        case 4:
-          text.insert(at, "9999999");
-          break;
-        default:
-          if (random() % 8U == 0) text.resize(at);
-          break;
-      }
-      if (text.empty()) text = "v";
-    }
-    write(scratch / name, text);
-    const auto map = load_map(scratch / name);
-    if (!map) {
-      EXPECT_THAT(map.error().message, HasSubstr("a."));
-      continue;
-    }
-    ++read;
-    EXPECT_FALSE(map->surfaces.empty());
-    for (const Edge& edge : map->edges) {
-      ASSERT_LT(std::max(edge.vertices[0], edge.vertices[1]), map->vertices.size());
-      ASSERT_TRUE(edge.surfaces[0] < map->surfaces.size() || edge.kind == EdgeKind::kDrawn);
-    }
-    for (const Eigen::Vector3f& p : map->vertices) ASSERT_TRUE(p.allFinite());
-  }
-  if (name != "a.cgsrmap") {
-    EXPECT_GT(read, kTrials / 50) << "the mutations are so coarse that they test nothing";
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Files, LoadMapFuzz, testing::Values("a.obj", "a.cao", "a.gltf", "a.cgsrmap"),
-                         [](const auto& file) { return std::string(file.param).substr(2); });
 
 }  // namespace
 }  // namespace cgsr::world
