@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
-"""Runs clang-tidy on every source file of the release build, two at a time, and remembers clean files.
+"""Runs clang-tidy, as many at a time as there are processors, and remembers clean files.
 
-usage: check_tidy.py [--quick] [--recent] [PATTERN]      only files whose path contains PATTERN
+usage: check_tidy.py [--quick] [--all] [PATTERN]
 
+What is looked at: files changed in the work tree and by the last commits, the newest first. Without the commits' history (a shallow clone),
+another sixth of the files with each commit.
+
+  --all     every file but the tests, for which the compilers' warnings have to do
+  PATTERN   every file whose path contains it, tests too
   --quick   what runs on a robot only (not tools/), without the search along execution paths (clang-analyzer-*) and the dearest of the
             rest: a third of the time
-  --recent  only what the last commits changed; without their history, another sixth of the files with each commit
 
 A file is clean as long as it, every project header it includes (directly or not), its compile command and .clang-tidy are
 the same bytes as when it last passed; the memory is build/tidy.json (build/tidy-quick.json).
@@ -20,13 +24,11 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-# A precompiled header of g++, and the warnings that go with it, mean nothing to clang; and without it each file shows whether it includes what it uses.
-PRECOMPILED = re.compile(r" -Winvalid-pch -include \S*cmake_pch\.hxx| -Wno-(restrict|stringop-overflow|stringop-overread)\b| --param ggc-\S+")
 # Beside the analyzer, the dearest checks by --enable-check-profile that the compilers' warnings half make up for.
 QUICK = ("-clang-analyzer-*,-bugprone-reserved-identifier,-bugprone-stringview-nullptr,-bugprone-suspicious-string-compare,"
          "-bugprone-multiple-statement-macro,-bugprone-unused-return-value,-misc-unused-using-decls")
 RECENT_COMMITS = 30
-MOST_RECENT = 60  # files, the newest ones
+MOST_RECENT = 40  # files
 INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
@@ -53,11 +55,12 @@ def git(*arguments):
 
 
 def recent(keys):
-    """Those of the files that the last commits changed, or whose header they changed, newest first."""
+    """Those of the files that were changed, or whose header was: in the work tree, then by the last commits, newest first."""
     if git("rev-parse", "--is-shallow-repository").strip() == "true":
         head = git("rev-parse", "HEAD")
         return [key for key in keys if hashlib.sha256((head + key).encode()).digest()[0] % 6 == 0]
-    changed = git("log", f"-{RECENT_COMMITS}", "--format=", "--name-only").splitlines()
+    changed = [line[3:] for line in git("status", "--porcelain").splitlines()]
+    changed += git("log", f"-{RECENT_COMMITS}", "--format=", "--name-only").splitlines()
     sources = dict.fromkeys(str(pathlib.Path(name).with_suffix(".cpp")) for name in changed if name.endswith((".h", ".cpp")))
     return [source for source in sources if source in keys][:MOST_RECENT]
 
@@ -73,11 +76,9 @@ def main():
     pattern = next((argument for argument in sys.argv[1:] if not argument.startswith("--")), "")
     checks = [f"--checks={QUICK}"] if quick else []
     memory_file = ROOT / "build" / ("tidy-quick.json" if quick else "tidy.json")
-    commands = json.loads((ROOT / "build" / "release" / "compile_commands.json").read_text())
-    for entry in commands:
-        entry["command"] = PRECOMPILED.sub("", entry["command"])
-    (ROOT / "build" / "tidy").mkdir(exist_ok=True)
-    (ROOT / "build" / "tidy" / "compile_commands.json").write_text(json.dumps(commands))
+    # Single files' commands: the tests' builds may compile files in groups, with a header that means nothing to clang.
+    subprocess.run(["cmake", "-S", ROOT, "--preset", "tidy"], check=True, stdout=subprocess.DEVNULL)
+    commands = json.loads((ROOT / "build" / "tidy" / "compile_commands.json").read_text())
     memory = json.loads(memory_file.read_text()) if memory_file.exists() else {}
     todo = []
     seen = set()
@@ -96,12 +97,11 @@ def main():
         seen.add(entry["key"])
         if memory.get(entry["key"]) != entry["mark"]:
             todo.append(entry)
-    if "--recent" in sys.argv[1:]:
+    unknown = len(todo)
+    if "--all" not in sys.argv[1:] and not pattern:
         newest = set(recent([entry["key"] for entry in todo]))
         todo = [entry for entry in todo if entry["key"] in newest]
-        print(f"{len(todo)} of {len(commands)} files are looked at", flush=True)
-    else:
-        print(f"{len(todo)} of {len(commands)} files changed since they were last clean", flush=True)
+    print(f"{len(todo)} files are looked at, of {unknown} not known to be clean", flush=True)
     bad = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for entry, code, output in pool.map(lambda entry: tidy(entry, checks), todo):
