@@ -26,9 +26,9 @@ class StopRequest {
   WakeUp wake_up_;
 };
 
-/// While this lives, SIGTERM and SIGINT request `stop` instead of ending the process. One at a time per process; what
-/// the signals did before comes back with the destructor. System calls are restarted, so no other code meets an EINTR
-/// from these.
+/// While this lives, SIGTERM, SIGINT and SIGHUP request `stop` instead of ending the process; a SIGHUP that was ignored before (nohup)
+/// stays ignored. One at a time per process; what the signals did before comes back with the destructor. System calls are restarted, so
+/// no other code meets an EINTR from these.
 class StopOnSignals {
  public:
   explicit StopOnSignals(StopRequest& stop);
@@ -38,6 +38,17 @@ class StopOnSignals {
 
   /// \return the last signal that came, 0 for none: for the exit line ("stopped by SIGTERM").
   [[nodiscard]] static int received() noexcept;
+};
+
+/// While this lives, within a StopOnSignals, a stop signal ends the process at once, with one line on standard error: for work that cannot
+/// be interrupted, such as loading a map or a plug-in, before anything moves and before any output has content.
+class EndAtOnceOnSignals {
+ public:
+  /// Ends the process right away when a signal came already.
+  explicit EndAtOnceOnSignals(int exit_code);
+  ~EndAtOnceOnSignals();
+  EndAtOnceOnSignals(const EndAtOnceOnSignals&) = delete;
+  EndAtOnceOnSignals& operator=(const EndAtOnceOnSignals&) = delete;
 };
 
 }  // namespace cgsr

@@ -50,7 +50,7 @@ TEST_P(StopOnSignalsTest, WakesTheServiceThread) {
   other.join();
 }
 
-INSTANTIATE_TEST_SUITE_P(Both, StopOnSignalsTest, testing::Values(SIGTERM, SIGINT));
+INSTANTIATE_TEST_SUITE_P(All, StopOnSignalsTest, testing::Values(SIGTERM, SIGINT, SIGHUP));
 
 int seen_by_former_handler = 0;
 
@@ -65,6 +65,34 @@ TEST(StopOnSignals, GivesTheSignalsBack) {
   EXPECT_EQ(seen_by_former_handler, SIGTERM);
   EXPECT_FALSE(stop.requested());
   sigaction(SIGTERM, &former, nullptr);
+}
+
+TEST(StopOnSignals, LeavesAHangUpIgnoredThatNohupIgnores) {
+  struct sigaction former {};
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGHUP, &ignore, &former);
+  {
+    StopRequest stop;
+    const StopOnSignals signals(stop);
+    raise(SIGHUP);
+    EXPECT_FALSE(stop.requested());
+  }
+  sigaction(SIGHUP, &former, nullptr);
+}
+
+TEST(EndAtOnceOnSignals, EndsTheProcessWhileItLivesAndNotAfterwards) {
+  StopRequest stop;
+  const StopOnSignals signals(stop);
+  const auto end_while_loading = [] {
+    const EndAtOnceOnSignals loading(3);
+    raise(SIGTERM);
+  };
+  EXPECT_EXIT(end_while_loading(), testing::ExitedWithCode(3), "while loading");
+  { const EndAtOnceOnSignals loading(3); }
+  raise(SIGTERM);
+  EXPECT_TRUE(stop.requested());
+  EXPECT_EXIT(EndAtOnceOnSignals(3), testing::ExitedWithCode(3), "while loading");  // one that came before
 }
 
 }  // namespace
