@@ -126,6 +126,7 @@ void HousekeepingTask::take(const VisionReport& report) {
                  behavior::text(decision.follow.state), behavior::text(decision.follow.reason));
     state_ = decision.follow.state;
   }
+  decisions_.add_image(report.record.image_sequence, decision);
   watch_pose(report);
   watch_light(report);
   watch_seek(report);
@@ -179,6 +180,7 @@ void HousekeepingTask::watch_seek(const VisionReport& report) {
 
 void HousekeepingTask::take(const SwitchRecord& record) {
   const SwitchAnswer& answer = record.answer;
+  decisions_.add_request(answer.request);
   tally_.switchings.push_back(record);
   const auto what =
       fmt::format("{} {}, asked at {:.3f} s", name_of(answer.request.line), answer.request.on ? "on" : "off",

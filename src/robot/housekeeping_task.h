@@ -16,6 +16,7 @@
 #include "src/output/plan_view.h"
 #include "src/output/text_file.h"
 #include "src/output/video_writer.h"
+#include "src/robot/decision_digest.h"
 #include "src/robot/light_tally.h"
 #include "src/robot/links.h"
 #include "src/robot/pose_tally.h"
@@ -105,6 +106,8 @@ class HousekeepingTask {
   /// SHA-256 over the rows of the CSV and over the pixels of the images. End the sums.
   std::string outputs_sha256() { return outputs_sum_.hex(); }
   std::string inputs_sha256() { return inputs_sum_.hex(); }
+  /// SHA-256 over what was decided, independent of columns and messages. Ends the sum.
+  std::string decisions_sha256() { return decisions_.hex(); }
 
  private:
   void take(const MotionStatus& status);
@@ -140,6 +143,7 @@ class HousekeepingTask {
   std::array<illumination::CheckState, 2> checks_{};  // by CheckedLamp
   config::Sha256 outputs_sum_;
   config::Sha256 inputs_sum_;
+  DecisionDigest decisions_;
 };
 
 /// The head of the CSV that a run writes.

@@ -224,6 +224,7 @@ std::string summary_json(Robot& robot, const std::string& ended_by) {
   json["color_sha256"] = config::hash(robot.config().color);
   json["outputs_sha256"] = housekeeping.outputs_sha256();
   json["inputs_sha256"] = housekeeping.inputs_sha256();
+  json["decisions_sha256"] = housekeeping.decisions_sha256();
   json["inputs_images"] = tally.pictures;
   json["ended_by"] = ended_by;
   json["problems"] = robot.problems();
