@@ -12,11 +12,10 @@
 #include "platform/log.h"
 #include "platform/memory.h"
 #include "platform/stop.h"
+#include "src/boot/robot.h"
 #include "src/command.h"
 #include "src/config/load.h"
 #include "src/output/text_file.h"
-#include "src/robot/robot.h"
-#include "src/robot/run_report.h"
 
 namespace cgsr::app {
 namespace {
@@ -28,12 +27,12 @@ struct Options {
   std::string json;
   std::string log_level = "info";
   int seed = -1;
-  robot::RunOptions run;
+  boot::RunOptions run;
 };
 
-std::string ended_by(const robot::Robot& robot) {
+std::string ended_by(const boot::Robot& robot) {
   if (const int signal = StopOnSignals::received(); signal != 0) return fmt::format("SIG{}", sigabbrev_np(signal));
-  if (robot.links().images_ended.load()) return "the last image";
+  if (robot.state().links.images_ended.load()) return "the last image";
   return "the duration";
 }
 
@@ -62,20 +61,20 @@ int run_robot(const Options& options) {
   auto config = config::load_robot(options.config);
   if (!config) return report(config.error());
   if (auto applied = apply(options, *config); !applied) return report(applied.error());
-  auto robot = robot::Robot::build(*config, options.run);
+  auto robot = boot::Robot::build(*config, options.run);
   if (!robot) return report(robot.error());
-  for (const std::string& note : (*robot)->notes()) spdlog::info("camera: {}", note);
-  for (const std::string& problem : (*robot)->problems()) spdlog::error("{}", problem);
-  spdlog::info("schedule:\n{}", runtime::to_text((*robot)->schedule()));
+  const boot::RobotState& state = (*robot)->state();
+  for (const std::string& note : state.report.notes) spdlog::info("{}", note);
+  for (const std::string& problem : state.report.problems) spdlog::error("{}", problem);
+  spdlog::info("schedule:\n{}", runtime::to_text(state.vision.runner->schedule()));
 
   if (auto done = (*robot)->run(stop); !done) return report(done.error());
-  const std::string end = ended_by(**robot);
-  fmt::print("{}", robot::summary_text(**robot, end));
+  const sinks::Summary summary = (*robot)->summary(ended_by(**robot));
+  fmt::print("{}", summary.text);
   if (!options.json.empty()) {
-    if (auto written = write_file(options.json, robot::summary_json(**robot, end)); !written)
-      return report(written.error());
+    if (auto written = write_file(options.json, summary.json.dump(1) + "\n"); !written) return report(written.error());
   }
-  return (*robot)->housekeeping().tally().output_problem.empty() ? kSuccess : kFailure;
+  return state.outputs.sinks.problem().empty() ? kSuccess : kFailure;
 }
 
 }  // namespace

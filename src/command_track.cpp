@@ -71,13 +71,13 @@ int run_track(const TrackOptions& options) {
   fmt::print(stderr, "{}\n", begun->words);
 
   const auto& mode = session->input->mode();
-  auto tracker = color::Tracker::create(begun->model, session->config.track, mode.width_px, mode.height_px);
-  if (!tracker) return report(tracker.error());
+  auto loop = stages::ColorLoop::make(begun->model, session->config.track, mode.width_px, mode.height_px);
+  if (!loop) return report(loop.error());
 
   StopRequest stop;
   const StopOnSignals signals(stop);
   const std::uint64_t first = begun->learned_from ? static_cast<std::uint64_t>(options.learn_frame) : 0;
-  TrackRun run(std::move(*session), std::move(begun->model), std::move(*tracker), first);
+  TrackRun run(std::move(*session), std::move(begun->model), std::move(*loop), first);
   if (begun->learned_from) {
     if (auto kept = run.begin_with(*begun->learned_from, begun->box); !kept) return report(kept.error());
     begun->learned_from.reset();

@@ -61,7 +61,7 @@ std::string_view text(RouteState state) {
   return "unknown";
 }
 
-RouteDecision Route::decide(const FloorBelief& here, Duration elapsed) {
+RouteDecision Route::decide(const PlanarPose& here, Duration elapsed) {
   RouteDecision decision;
   const double elapsed_s = std::clamp(to_seconds(elapsed), 0.0, 0.2);
   if (!here.known) {
@@ -81,7 +81,7 @@ RouteDecision Route::decide(const FloorBelief& here, Duration elapsed) {
   return decision;
 }
 
-void Route::pass_places(const FloorBelief& here) {
+void Route::pass_places(const PlanarPose& here) {
   for (std::size_t passed = 0; passed < places_.size() && !at_end(); ++passed) {
     const Place& place = places_[next_];
     if (std::hypot(place.x_m - here.x_m, place.y_m - here.y_m) > parameters_.reached_m) return;
@@ -90,7 +90,7 @@ void Route::pass_places(const FloorBelief& here) {
   }
 }
 
-Velocity Route::wanted(const FloorBelief& here) const {
+Velocity Route::wanted(const PlanarPose& here) const {
   const Place& place = places_[next_];
   const double way_m = std::hypot(place.x_m - here.x_m, place.y_m - here.y_m);
   const double bearing =

@@ -52,7 +52,7 @@ struct Place {
 Result<std::vector<Place>> parse_places(std::string_view text);
 
 /// Where the robot believes to be on its floor.
-struct FloorBelief {
+struct PlanarPose {
   bool known = false;
   double x_m = 0.0;
   double y_m = 0.0;
@@ -82,12 +82,12 @@ class Route {
   Route(const RouteParameters& parameters, std::vector<Place> places)
       : parameters_(parameters), places_(std::move(places)) {}
 
-  RouteDecision decide(const FloorBelief& here, Duration elapsed);
+  RouteDecision decide(const PlanarPose& here, Duration elapsed);
 
  private:
-  void pass_places(const FloorBelief& here);
+  void pass_places(const PlanarPose& here);
   [[nodiscard]] bool at_end() const { return next_ >= places_.size(); }
-  [[nodiscard]] Velocity wanted(const FloorBelief& here) const;
+  [[nodiscard]] Velocity wanted(const PlanarPose& here) const;
 
   RouteParameters parameters_;
   std::vector<Place> places_;

@@ -23,11 +23,11 @@ constexpr int kHeadings = 24;
 constexpr double kCalm_s = 1.0;       // until a base that stopped does not rock any more
 constexpr double kCheckMost_s = 8.0;  // a check that is not over by then never will be
 
-double bearing_of(const FloorBelief& here, const Place& place) {
+double bearing_of(const PlanarPose& here, const Place& place) {
   return std::remainder(std::atan2(place.y_m - here.y_m, place.x_m - here.x_m) - here.heading_rad, kTurn);
 }
 
-double way_between(const FloorBelief& here, const Place& place) {
+double way_between(const PlanarPose& here, const Place& place) {
   return std::hypot(place.x_m - here.x_m, place.y_m - here.y_m);
 }
 
@@ -128,7 +128,7 @@ void SeekLamp::go_on(SeekState state, SeekReason reason) {
   leg_ = Leg::kChoose;
 }
 
-SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, Duration elapsed) {
+SeekDecision SeekLamp::decide(const PlanarPose& here, const LampBelief& lamp, Duration elapsed) {
   elapsed_s_ = std::clamp(to_seconds(elapsed), 0.0, 0.2);
   in_state_s_ += elapsed_s_;
   without_pose_s_ = here.known ? 0.0 : without_pose_s_ + elapsed_s_;
@@ -170,7 +170,7 @@ SeekDecision SeekLamp::decide(const FloorBelief& here, const LampBelief& lamp, D
   return decision;
 }
 
-Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
+Velocity SeekLamp::wanted(const PlanarPose& here, const LampBelief& lamp) {
   switch (state_) {
     case SeekState::kWaiting:
       if (!lamp.has_board) {
@@ -214,13 +214,13 @@ Velocity SeekLamp::wanted(const FloorBelief& here, const LampBelief& lamp) {
   return {};
 }
 
-void SeekLamp::begin(const FloorBelief& here, const LampBelief& lamp) {
+void SeekLamp::begin(const PlanarPose& here, const LampBelief& lamp) {
   start_ = here;
   last_heading_rad_ = here.heading_rad;
   go_on(lamp.probes_check == CheckState::kOpen ? SeekState::kChecking : SeekState::kExploring, SeekReason::kPoseKnown);
 }
 
-Velocity SeekLamp::explore(const FloorBelief& here, const LampBelief& lamp) {
+Velocity SeekLamp::explore(const PlanarPose& here, const LampBelief& lamp) {
   if (lamp.known) {
     go_on(SeekState::kApproaching, SeekReason::kShadowSeen);
     return {};
@@ -251,7 +251,7 @@ Velocity SeekLamp::explore(const FloorBelief& here, const LampBelief& lamp) {
 }
 
 /// As far from all places that were looked at as a step can lead.
-void SeekLamp::choose_next_place(const FloorBelief& here) {
+void SeekLamp::choose_next_place(const PlanarPose& here) {
   double best = -1.0;
   next_ = {here.x_m, here.y_m};
   for (int i = 0; i < kHeadings; ++i) {
@@ -273,13 +273,13 @@ void SeekLamp::choose_next_place(const FloorBelief& here) {
   on_the_way_ = true;
 }
 
-double SeekLamp::board_to_lamp_m(const FloorBelief& here) const {
+double SeekLamp::board_to_lamp_m(const PlanarPose& here) const {
   const double x = here.x_m + board_.forward_m * std::cos(here.heading_rad);
   const double y = here.y_m + board_.forward_m * std::sin(here.heading_rad);
   return std::hypot(lamp_.x_m - x, lamp_.y_m - y);
 }
 
-Velocity SeekLamp::approach(const FloorBelief& here, const LampBelief& /*lamp*/) {
+Velocity SeekLamp::approach(const PlanarPose& here, const LampBelief& /*lamp*/) {
   if (unknown_s_ > kLampGone_s) {
     go_on(SeekState::kExploring, SeekReason::kLampGone);
     return {};
@@ -301,7 +301,7 @@ Velocity SeekLamp::approach(const FloorBelief& here, const LampBelief& /*lamp*/)
   return towards(here, next_);
 }
 
-Velocity SeekLamp::locate(const FloorBelief& here, const LampBelief& lamp) {
+Velocity SeekLamp::locate(const PlanarPose& here, const LampBelief& lamp) {
   if (unknown_s_ > kLampGone_s) {
     go_on(SeekState::kExploring, SeekReason::kLampGone);
     return {};
@@ -352,7 +352,7 @@ void SeekLamp::prove(const LampBelief& lamp) {
   }
 }
 
-void SeekLamp::choose_way_back(const FloorBelief& here) {
+void SeekLamp::choose_way_back(const PlanarPose& here) {
   const double straight = std::atan2(here.y_m - lamp_.y_m, here.x_m - lamp_.x_m);
   double best = -1.0;
   double way_there = 0.0;
@@ -371,7 +371,7 @@ void SeekLamp::choose_way_back(const FloorBelief& here) {
   leg_ = way_there < kWorthGoing_m ? Leg::kTurnBack : Leg::kTurnAway;
 }
 
-Velocity SeekLamp::back_off(const FloorBelief& here, const LampBelief& /*lamp*/) {
+Velocity SeekLamp::back_off(const PlanarPose& here, const LampBelief& /*lamp*/) {
   if (leg_ == Leg::kChoose) choose_way_back(here);
   bool there = false;
   if (leg_ == Leg::kTurnAway) {
@@ -411,7 +411,7 @@ bool SeekLamp::in_area(double x_m, double y_m) const {
   return x >= area_.min_x_m && x <= area_.max_x_m && y >= area_.min_y_m && y <= area_.max_y_m;
 }
 
-double SeekLamp::way_m(const FloorBelief& here, double heading_rad, double longest_m) const {
+double SeekLamp::way_m(const PlanarPose& here, double heading_rad, double longest_m) const {
   if (!floor_) return 0.0;
   const double free = floor_->way_m(here.x_m, here.y_m, heading_rad, longest_m);
   const double dx = std::cos(heading_rad);
@@ -422,7 +422,7 @@ double SeekLamp::way_m(const FloorBelief& here, double heading_rad, double longe
   return std::min(way, free);
 }
 
-Velocity SeekLamp::towards(const FloorBelief& here, const Place& place) const {
+Velocity SeekLamp::towards(const PlanarPose& here, const Place& place) const {
   const double bearing = bearing_of(here, place);
   const double ahead = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.max_driving_bearing_rad);
   const double way = way_between(here, place);
@@ -430,7 +430,7 @@ Velocity SeekLamp::towards(const FloorBelief& here, const Place& place) const {
           std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps)};
 }
 
-Velocity SeekLamp::facing(const FloorBelief& here, double heading_rad, bool& done) const {
+Velocity SeekLamp::facing(const PlanarPose& here, double heading_rad, bool& done) const {
   const double off = std::remainder(heading_rad - here.heading_rad, kTurn);
   done = std::abs(off) <= parameters_.facing_deg * kRadPerDeg;
   // Slower than this the base would not turn at all.

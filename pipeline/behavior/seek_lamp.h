@@ -175,7 +175,7 @@ class SeekLamp {
            const KeptArea& area)
       : parameters_(parameters), floor_(std::move(floor)), board_(board), area_(area) {}
 
-  SeekDecision decide(const FloorBelief& here, const LampBelief& lamp, Duration elapsed);
+  SeekDecision decide(const PlanarPose& here, const LampBelief& lamp, Duration elapsed);
 
   /// Is it where the object is looked for?
   [[nodiscard]] bool tracks() const { return state_ == SeekState::kTracking || state_ == SeekState::kAmbient; }
@@ -184,23 +184,23 @@ class SeekLamp {
   static constexpr int kMostVisited = 16;
 
   void go_on(SeekState state, SeekReason reason);
-  [[nodiscard]] Velocity wanted(const FloorBelief& here, const LampBelief& lamp);
-  Velocity explore(const FloorBelief& here, const LampBelief& lamp);
-  Velocity approach(const FloorBelief& here, const LampBelief& lamp);
-  Velocity locate(const FloorBelief& here, const LampBelief& lamp);
-  Velocity back_off(const FloorBelief& here, const LampBelief& lamp);
+  [[nodiscard]] Velocity wanted(const PlanarPose& here, const LampBelief& lamp);
+  Velocity explore(const PlanarPose& here, const LampBelief& lamp);
+  Velocity approach(const PlanarPose& here, const LampBelief& lamp);
+  Velocity locate(const PlanarPose& here, const LampBelief& lamp);
+  Velocity back_off(const PlanarPose& here, const LampBelief& lamp);
   Velocity shade(const LampBelief& lamp);
-  void begin(const FloorBelief& here, const LampBelief& lamp);
+  void begin(const PlanarPose& here, const LampBelief& lamp);
   void check(illumination::CheckState state);
   void prove(const LampBelief& lamp);
   void measured(const LampBelief& lamp, SeekReason reason);
-  void choose_next_place(const FloorBelief& here);
-  void choose_way_back(const FloorBelief& here);
-  [[nodiscard]] double way_m(const FloorBelief& here, double heading_rad, double longest_m) const;
+  void choose_next_place(const PlanarPose& here);
+  void choose_way_back(const PlanarPose& here);
+  [[nodiscard]] double way_m(const PlanarPose& here, double heading_rad, double longest_m) const;
   [[nodiscard]] bool in_area(double x_m, double y_m) const;
-  [[nodiscard]] Velocity towards(const FloorBelief& here, const Place& place) const;
-  [[nodiscard]] Velocity facing(const FloorBelief& here, double heading_rad, bool& done) const;
-  [[nodiscard]] double board_to_lamp_m(const FloorBelief& here) const;
+  [[nodiscard]] Velocity towards(const PlanarPose& here, const Place& place) const;
+  [[nodiscard]] Velocity facing(const PlanarPose& here, double heading_rad, bool& done) const;
+  [[nodiscard]] double board_to_lamp_m(const PlanarPose& here) const;
 
   SeekLampParameters parameters_;
   std::shared_ptr<const FreeFloor> floor_;
@@ -214,7 +214,7 @@ class SeekLamp {
   double unreadable_s_ = 0.0;
   double unknown_s_ = 0.0;  // since the lamp was known
   double elapsed_s_ = 0.0;
-  FloorBelief start_;
+  PlanarPose start_;
   Place lamp_;  // where it was last known
   double lamp_z_m_ = 0.0;
   Velocity goal_;

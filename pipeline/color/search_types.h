@@ -41,6 +41,12 @@ struct SearchParameters {
   }
 };
 
+/// The window size with which an image is searched, in camera pixels.
+struct SearchSize {
+  double width_px = 0.0;
+  double height_px = 0.0;
+};
+
 inline constexpr int kMaxMatches = 16;
 inline constexpr int kMaxSizes = 5;
 

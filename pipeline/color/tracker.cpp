@@ -1,6 +1,5 @@
 #include "pipeline/color/tracker.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "pipeline/color/tracker_state.h"
@@ -9,16 +8,10 @@ namespace cgsr::color {
 
 Result<Tracker> Tracker::create(const ColorModel& model, const TrackParameters& parameters, int max_width_px,
                                 int max_height_px) {
-  auto settings = parameters.search;
-  if (parameters.mode == TrackMode::kPlain) {
-    settings.weights = BinWeights::kPlain;
-    settings.sizes = 1;
-  } else if (model.samples.empty()) {
+  if (parameters.mode == TrackMode::kFull && model.samples.empty()) {
     return fail("the colour model keeps no picture of the object, which mode \"full\" needs: learn it again");
   }
-  auto search = WindowSearch::create(model, settings, max_width_px, max_height_px);
-  if (!search) return tl::unexpected(search.error());
-  return Tracker(std::make_unique<State>(model, parameters, std::move(*search), max_width_px, max_height_px));
+  return Tracker(std::make_unique<State>(model, parameters, max_width_px, max_height_px));
 }
 
 Tracker::Tracker(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -26,12 +19,8 @@ Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 Tracker::~Tracker() = default;
 
-const imaging::LabelTable& Tracker::labels() const {
-  return state_->search.labels();
-}
-
-int Tracker::reduction(int width_px, int height_px) const {
-  return imaging::reduction_for(width_px, height_px, std::min(state_->model.width_px, state_->model.height_px));
+SearchSize Tracker::search_size() const {
+  return state_->search_size();
 }
 
 void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box) {
@@ -49,10 +38,6 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.images_since_sight = 0;
   s.weak_images = 0;
   s.max_foreign_images = 0;
-}
-
-SearchResult Tracker::search(const imaging::ReducedImage& reduced, WorkBudget& budget) {
-  return state_->search_all(reduced, budget);
 }
 
 TrackedObject Tracker::track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,

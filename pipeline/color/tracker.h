@@ -113,7 +113,7 @@ struct TrackedObject {
   Light exact_light;        ///< the same, not bound to the grid.
 };
 
-/// Finds a learned object in image after image (chapter 3).
+/// Follows a learned object from image to image, by what a search of the whole image (ObjectSearch) found in each (chapter 3).
 ///
 /// Threads: one. Memory is reserved by create; track never allocates.
 class Tracker {
@@ -125,26 +125,17 @@ class Tracker {
   Tracker& operator=(Tracker&&) noexcept;
   ~Tracker();
 
-  /// The table and the factor to reduce the next image with (imaging::reduce). \param width_px, height_px  of that image.
-  [[nodiscard]] const imaging::LabelTable& labels() const;
-  [[nodiscard]] int reduction(int width_px, int height_px) const;
+  /// The window size with which the next image is to be searched (ObjectSearch): as the object was last seen, or as it was learned.
+  [[nodiscard]] SearchSize search_size() const;
 
   /// Says where the object is known to be, as in the image that it was learned from.
   void place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box);
 
-  /// The first half of an image's work, Alg. 3.2: the windows of the whole image that are nearest to the learned histograms, best first.
-  /// \param reduced  the image, reduced with labels() and reduction(). \param budget  asked once per unit of the search.
-  SearchResult search(const imaging::ReducedImage& reduced, WorkBudget& budget);
-
-  /// The second half: which of them it is, or what became of the object since the last image, and the box that fits.
-  /// \param image  as the camera sent it. \param matches  of search(). \param budget  asked once per closer look.
+  /// Which of the windows that a search found it is, or what became of the object since the last image, and the box that fits.
+  /// \param image  as the camera sent it. \param reduced  the same, reduced with ObjectSearch's labels. \param matches  of the search of this
+  ///        image, with search_size(). \param budget  asked once per closer look.
   TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,
                       WorkBudget& budget);
-
-  /// Both halves.
-  TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, WorkBudget& budget) {
-    return track(image, reduced, search(reduced, budget), budget);
-  }
 
  private:
   struct State;

@@ -27,16 +27,10 @@ void Tracker::State::keep_colors(const ObjectView& view) {
   learned_amounts = ColorAmounts(view);
 }
 
-SearchResult Tracker::State::search_all(const imaging::ReducedImage& reduced, WorkBudget& budget) {
-  SearchRequest request;
-  const bool plain = parameters.mode == TrackMode::kPlain;
-  if (!plain && !located) box = centred_on(box, model.width_px * lost_scale(), model.height_px * lost_scale());
-  request.width_px = plain ? model.width_px : box.width;
-  request.height_px = plain ? model.height_px : box.height;
-  request.max_divergence = parameters.max_divergence;
-  request.candidates = plain ? 1 : parameters.candidates;
-  request.budget = &budget;
-  return search.search(reduced, request).value_or(SearchResult{});
+SearchSize Tracker::State::search_size() const {
+  if (parameters.mode == TrackMode::kPlain) return {model.width_px, model.height_px};
+  if (located) return {box.width, box.height};
+  return {model.width_px * lost_scale(), model.height_px * lost_scale()};
 }
 
 TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
@@ -52,6 +46,10 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
                                          WorkBudget& budget) {
   Place place;
   bool sure = false;
+  if (!located) {
+    const SearchSize size = search_size();
+    box = centred_on(box, size.width_px, size.height_px);
+  }
   if (located && !lost()) {
     local.follow_light(pyramid);
     place = look(reduced, box);

@@ -2,13 +2,11 @@
 
 #include <array>
 #include <cstddef>
-#include <utility>
 
 #include "pipeline/color/box_divergence.h"
 #include "pipeline/color/color_agreement.h"
 #include "pipeline/color/light_estimate.h"
 #include "pipeline/color/tracker.h"
-#include "pipeline/color/window_search.h"
 
 namespace cgsr::color {
 
@@ -25,10 +23,9 @@ struct Tint {
 };
 
 struct Tracker::State {
-  State(const ColorModel& m, const TrackParameters& p, WindowSearch s, int max_width_px, int max_height_px)
+  State(const ColorModel& m, const TrackParameters& p, int max_width_px, int max_height_px)
       : model(m),
         parameters(p),
-        search(std::move(s)),
         divergence(m, p.search.divergence),
         pyramid(max_width_px, max_height_px),
         local(p.local) {
@@ -37,7 +34,7 @@ struct Tracker::State {
 
   void learn_from_model();
   void keep_colors(const ObjectView& view);
-  SearchResult search_all(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  [[nodiscard]] SearchSize search_size() const;
   TrackedObject track_plain(const SearchResult& matches) const;
   TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
   Place look(const imaging::ReducedImage& reduced, const Box& box);
@@ -57,7 +54,6 @@ struct Tracker::State {
 
   ColorModel model;
   TrackParameters parameters;
-  WindowSearch search;
   BoxDivergence divergence;
   imaging::Pyramid pyramid;
   LocalTracker local;

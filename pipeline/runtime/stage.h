@@ -6,10 +6,12 @@
 #include <exception>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
+#include "pipeline/runtime/aged.h"
 #include "pipeline/runtime/frame_record.h"
 #include "pipeline/runtime/motion_stop.h"
 #include "pipeline/runtime/schedule.h"
@@ -20,42 +22,61 @@
 
 namespace cgsr::runtime {
 
-/// A stage's last output and how old it is. Converts to the value, so that a stage that does not care about the age
-/// takes a `const T&`, and one that does a `const Aged<T>&`.
-template <class T>
-struct Aged {
-  T value{};
-  MonoTime stamp{};                ///< of the frame in which it was computed. What it was computed from may be older.
-  Duration age = Duration::max();  ///< from there to the present frame: zero when computed just now, max() when never.
-
-  [[nodiscard]] bool ever() const { return age != Duration::max(); }
-  operator const T&() const { return value; }  // NOLINT(google-explicit-constructor): that is the purpose
+/// The type of what a stage's worker returns.
+template <class Worker>
+struct OutputOf {
+  using Type = typename decltype(std::function{
+      std::declval<Worker>()})::result_type;  // a function object; only to deduce it
+};
+template <class Worker>
+requires requires {
+  typename Worker::Output;
+}
+struct OutputOf<Worker> {
+  using Type = typename Worker::Output;
 };
 
-/// One line of the loop: a name in the schedule, the function, and its last output.
+/// One line of the loop: a name in the schedule, the worker that does the work, and its last output.
 ///
-/// \tparam Function a function object or function pointer with one signature, `Output (inputs…)` or, when its work
-/// comes in units,
-/// `Output (WorkBudget&, inputs…)`. Output is default-constructible (meaning: nothing yet) and assignable. It must stay
-/// valid until the
-///         stage's next run: it owns its data or points into what the function object keeps, never into an image.
-template <class Function>
+/// \tparam Worker  a class with `Output` and `Output update(inputs...)`, or, when its work comes in units,
+///         `Output update(WorkBudget&, inputs...)`; or a function object with one signature of either kind. Output is
+///         default-constructible (meaning: nothing yet) and assignable. It must stay valid until the stage's next run: it owns
+///         its data, holds a lease on it, or points into what the worker keeps; never into an image.
+template <class Worker>
 class Stage {
  public:
-  using Output = typename decltype(std::function{std::declval<Function>()})::result_type;  // only to deduce it
+  using Output = typename OutputOf<Worker>::Type;
 
-  /// \param name text that outlives the stage, the same as in the schedule.
-  Stage(std::string_view name, Function function) : name_(name), function_(std::move(function)) {}
+  /// \param made  null: the robot has none; the stage has its turn all the same, and its output stays the default.
+  explicit Stage(std::unique_ptr<Worker> made) : name_(Worker::kName), worker_(std::move(made)) {}
+  /// \param name  text that outlives the stage, the same as in the schedule.
+  Stage(std::string_view name, Worker made) : name_(name), worker_(std::make_unique<Worker>(std::move(made))) {}
 
   [[nodiscard]] std::string_view name() const { return name_; }
   [[nodiscard]] const Aged<Output>& last() const { return last_; }
+  /// \return the worker; null where the robot has none.
+  [[nodiscard]] Worker* worker() { return worker_.get(); }
 
  private:
   friend class StageRunner;
   static constexpr std::size_t kNoRow = kMostStages;
 
+  template <class... Inputs>
+  Output work(WorkBudget& budget, const Inputs&... inputs) {
+    if (!worker_) return {};
+    if constexpr (requires { worker_->update(budget, inputs...); }) {
+      return worker_->update(budget, inputs...);
+    } else if constexpr (requires { worker_->update(inputs...); }) {
+      return worker_->update(inputs...);
+    } else if constexpr (std::is_invocable_v<Worker&, WorkBudget&, const Inputs&...>) {
+      return (*worker_)(budget, inputs...);
+    } else {
+      return (*worker_)(inputs...);
+    }
+  }
+
   std::string_view name_;
-  Function function_;
+  std::unique_ptr<Worker> worker_;
   Aged<Output> last_;
   std::size_t row_ = kNoRow;
 };
@@ -86,8 +107,8 @@ class StageRunner {
   StageRunner(const Clock& clock, Schedule schedule, BudgetSource source, MotionStop& stop);
 
   /// Gives every stage its row. \return an error that names each stage without a row and each row without a stage.
-  template <class... Functions>
-  Result<void> bind(Stage<Functions>&... stages) {
+  template <class... Workers>
+  Result<void> bind(Stage<Workers>&... stages) {
     return bind_rows({Binding{stages.name_, &stages.row_}...});
   }
 
@@ -97,17 +118,12 @@ class StageRunner {
 
   /// Gives the stage its turn. \return its output: of now, or when it had no turn or threw, the last one with its age.
   /// \throws std::logic_error when the stage is not bound: a mistake in the program, not in the data.
-  template <class Function, class... Inputs>
-  const Aged<typename Stage<Function>::Output>& run(Stage<Function>& stage, const Inputs&... inputs) {
+  template <class Worker, class... Inputs>
+  const Aged<typename Stage<Worker>::Output>& run(Stage<Worker>& stage, const Inputs&... inputs) {
     auto& last = stage.last_;
     if (begin_stage(stage.row_, stage.name_)) {
       try {
-        if constexpr (std::is_invocable_v<Function&, WorkBudget&, const Inputs&...>) {
-          WorkBudget& budget = budget_;
-          last.value = stage.function_(budget, inputs...);
-        } else {
-          last.value = stage.function_(inputs...);
-        }
+        last.value = stage.work(budget_, inputs...);
         last.stamp = record_.stamp;
         last.age = Duration::zero();
         end_stage(stage.row_, StageOutcome::kRan);

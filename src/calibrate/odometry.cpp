@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "pipeline/odometry_track.h"
+#include "pipeline/stages/odometry_track.h"
 #include "src/calibrate/least_squares.h"
 
 namespace cgsr::app {
@@ -97,7 +97,7 @@ Result<void> check_fit(const OdometryFit& fit, double stretch_m) {
   };
   for (const auto& [name, value, sigma] :
        {Scale{"forward", fit.forward, fit.sigma_forward}, Scale{"turn", fit.turn, fit.sigma_turn}}) {
-    constexpr Range<double> kTaken = OdometryScales::kRange;
+    constexpr Range<double> kTaken = stages::OdometryScales::kRange;
     if (!(value >= kTaken.minimum && value <= kTaken.maximum)) {
       return fail(
           fmt::format("the scale of {} is {:.4f}; expected {}..{}, as a robot's file takes it: are both files "

@@ -8,10 +8,11 @@
 #include "hal/rmp/parameters.h"
 #include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
-#include "pipeline/motion_limits.h"
-#include "pipeline/odometry_track.h"
+#include "pipeline/color/integrated_tracker.h"
+#include "pipeline/illumination/lamp.h"
+#include "pipeline/motion/motion_limits.h"
+#include "pipeline/stages/odometry_track.h"
 #include "pipeline/vision_loop.h"
-#include "pipeline/vision_stages.h"
 #include "src/config/color.h"
 #include "src/config/whereabouts.h"
 
@@ -66,6 +67,22 @@ struct Run {
   }
 };
 
+/// The pinhole of the camera that the images come from (frames: docs/frames.md), where no calibration says more.
+struct Pinhole {
+  double fx_px = 601.8;
+  double fy_px = 579.4;
+  double cx_px = 319.5;
+  double cy_px = 239.5;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("fx_px", self.fx_px, {10.0, 20000.0}, "px", "focal length along x");
+    visit.number("fy_px", self.fy_px, {10.0, 20000.0}, "px", "focal length along y");
+    visit.number("cx_px", self.cx_px, {-10000.0, 20000.0}, "px", "column of the optical axis");
+    visit.number("cy_px", self.cy_px, {-10000.0, 20000.0}, "px", "row of the optical axis");
+  }
+};
+
 struct Camera {
   CameraSource source = CameraSource::kReplay;
   Pinhole pinhole;
@@ -105,7 +122,7 @@ struct Switches {
   }
 
   /// By LampLine.
-  [[nodiscard]] std::array<std::string, kLampLines> lamps() const {
+  [[nodiscard]] std::array<std::string, stages::kLampLines> lamps() const {
     return {probe_lamp_line, room_lamp_line, fill_light_line};
   }
 };
@@ -121,11 +138,11 @@ struct Robot {
   VisionStages stage;
   Color color;
   RobotLocalization localization;
-  OdometryScales odometry;
+  stages::OdometryScales odometry;
   color::IntegratedParameters integrated;
   illumination::ProbesParameters probes;
   illumination::LampParameters lamp;
-  ShadeStageParameters shade;
+  stages::ShadeStageParameters shade;
   Task task;
   behavior::FollowParameters follow;
   MotionParameters motion;

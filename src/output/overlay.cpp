@@ -64,16 +64,12 @@ const cv::Mat& Overlay::draw(const ImageView& image, const OverlayFacts& facts) 
   return picture_;
 }
 
-void Overlay::draw_shade(const ShadePicture& shade, cv::Mat& top) {
-  cv::Mat possibly(ShadePicture::kHeight, ShadePicture::kWidth, CV_8UC1);
-  cv::Mat surface(ShadePicture::kHeight, ShadePicture::kWidth, CV_8UC1);
-  for (int row = 0; row < ShadePicture::kHeight; ++row) {
-    for (int column = 0; column < ShadePicture::kWidth; ++column) {
-      const int cell = shade.at(column, row);
-      possibly.at<std::uint8_t>(row, column) = (cell & 1) != 0 ? 255 : 0;
-      surface.at<std::uint8_t>(row, column) = (cell & 2) != 0 ? 255 : 0;
-    }
-  }
+void Overlay::draw_shade(const render::ShadeMasks& shade, cv::Mat& top) {
+  const auto mask = [&shade](const std::vector<std::uint8_t>& cells) {
+    return cv::Mat(shade.height, shade.width, CV_8UC1, const_cast<std::uint8_t*>(cells.data()));  // read only
+  };
+  const cv::Mat possibly = mask(shade.possibly_shaded);
+  const cv::Mat surface = mask(shade.surface_shaded);
   cv::Mat large;
   cv::resize(possibly, large, top.size(), 0, 0, cv::INTER_NEAREST);
   cv::Mat tinted;

@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/color/light.h"
-#include "pipeline/what_is_shaded.h"
+#include "pipeline/render/shadow_volumes.h"
 #include "platform/box.h"
 #include "platform/image_view.h"
 
@@ -21,8 +21,9 @@ struct OverlayFacts {
   std::optional<Box> truth;  ///< where it really is, when known.
   std::optional<color::Light> light;
   double divergence = 0.0;
-  const ShadePicture* shade = nullptr;  ///< what may lie in shadow: tinted, and outlined where the surface itself does.
-  std::vector<std::string> lines;       ///< free text below the image, one line each; at most four are drawn.
+  const render::ShadeMasks* shade =
+      nullptr;                     ///< what may lie in shadow: tinted, and outlined where the surface itself does.
+  std::vector<std::string> lines;  ///< free text below the image, one line each; at most four are drawn.
 };
 
 /// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3)
@@ -39,7 +40,7 @@ class Overlay {
 
  private:
   void draw_box(const Box& box, const cv::Scalar& color, int thickness);
-  void draw_shade(const ShadePicture& shade, cv::Mat& top);
+  void draw_shade(const render::ShadeMasks& shade, cv::Mat& top);
   void draw_panel(const OverlayFacts& facts);
 
   int width_px_;

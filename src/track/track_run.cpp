@@ -20,24 +20,19 @@ std::string csv_row(std::uint64_t frame, const color::TrackedObject& object) {
 
 }  // namespace
 
-TrackRun::TrackRun(Session session, color::ColorModel model, color::Tracker tracker, std::uint64_t first_frame)
-    : session_(std::move(session)),
-      model_(std::move(model)),
-      tracker_(std::move(tracker)),
-      reduced_(session_.input->mode().width_px, session_.input->mode().height_px),
-      frame_(first_frame) {}
+TrackRun::TrackRun(Session session, color::ColorModel model, stages::ColorLoop loop, std::uint64_t first_frame)
+    : session_(std::move(session)), model_(std::move(model)), loop_(std::move(loop)), frame_(first_frame) {}
 
 Result<void> TrackRun::begin_with(const ImageLease& image, const Box& box) {
-  const auto& view = image.view();
-  const int factor = tracker_.reduction(view.width_px, view.height_px);
-  if (imaging::reduce(view, factor, tracker_.labels(), reduced_)) tracker_.place(view, reduced_, box);
+  loop_.place(image.view(), box);
   color::TrackedObject known{true, box, 0.0, {}, {}};
   if (!model_.samples.empty()) known.light = model_.samples.front().light;
   return keep(image, known);
 }
 
 Result<void> TrackRun::track(const ImageLease& image) {
-  const color::TrackedObject object = look(image.view());
+  const color::TrackedObject object = loop_.track(image.view());
+  count_image_end();
   ++asked_;
   found_ += object.found ? 1 : 0;
   return keep(image, object);
@@ -57,26 +52,6 @@ std::optional<Score> TrackRun::score(std::uint64_t first_answer) const {
   const std::size_t seen = std::min(session_.truth->size(), boxes_.size());
   return app::score(boxes_, Boxes(session_.truth->begin(), session_.truth->begin() + static_cast<std::ptrdiff_t>(seen)),
                     static_cast<int>(first_answer));
-}
-
-// The stages of an image, between the marks that tools/count counts by.
-color::TrackedObject TrackRun::look(const ImageView& view) {
-  count_stage_begin();
-  const auto outcome =
-      imaging::reduce(view, tracker_.reduction(view.width_px, view.height_px), tracker_.labels(), reduced_);
-  count_stage_end("decode");
-  color::TrackedObject object;
-  if (outcome) {
-    UnlimitedBudget unlimited;
-    count_stage_begin();
-    const color::SearchResult matches = tracker_.search(reduced_, unlimited);
-    count_stage_end("search");
-    count_stage_begin();
-    object = tracker_.track(view, reduced_, matches, unlimited);
-    count_stage_end("track");
-  }
-  count_image_end();
-  return object;
 }
 
 Result<void> TrackRun::keep(const ImageLease& image, const color::TrackedObject& object) {

@@ -5,8 +5,8 @@
 
 #include "pipeline/color/color_model.h"
 #include "pipeline/color/light_history.h"
-#include "pipeline/color/tracker.h"
 #include "pipeline/imaging/reduce.h"
+#include "pipeline/stages/color_stages.h"
 #include "src/track/session.h"
 
 namespace cgsr::app {
@@ -15,7 +15,7 @@ namespace cgsr::app {
 class TrackRun {
  public:
   /// \param first_frame  number of the image that comes first.
-  TrackRun(Session session, color::ColorModel model, color::Tracker tracker, std::uint64_t first_frame);
+  TrackRun(Session session, color::ColorModel model, stages::ColorLoop loop, std::uint64_t first_frame);
 
   // Each of these is one image further; an error is a file that could not be written.
 
@@ -38,7 +38,6 @@ class TrackRun {
   [[nodiscard]] std::optional<Score> score(std::uint64_t first_answer) const;
 
  private:
-  color::TrackedObject look(const ImageView& view);
   Result<void> keep(const ImageLease& image, const color::TrackedObject& object);
   Result<void> draw(const ImageLease& image, const color::TrackedObject& object,
                     const std::optional<color::Light>& light);
@@ -46,8 +45,7 @@ class TrackRun {
 
   Session session_;
   color::ColorModel model_;
-  color::Tracker tracker_;
-  imaging::ReducedImage reduced_;
+  stages::ColorLoop loop_;
   color::LightHistory history_;
   Boxes boxes_;
   std::uint64_t frame_;

@@ -100,7 +100,7 @@ TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
   ASSERT_EQ(switchings.size(), 4U);
   for (const auto& one : switchings) {
     EXPECT_EQ(one["done"], true);
-    EXPECT_GE(one["answered_s"], one["asked_s"]);
+    EXPECT_GE(one["answered_s"], one["requested_s"]);
   }
   EXPECT_EQ(switchings[3]["on"], false) << "as it was before";
   EXPECT_GT(summary["light"]["unanswered"]["a lamp is switched"], 0);

@@ -56,13 +56,13 @@ TEST_F(RunReplay, LockStepGivesTheSameBytesEveryTime) {
   EXPECT_EQ(first["inputs_images"], 60);
   EXPECT_EQ(first["outputs_sha256"], second["outputs_sha256"]);
   EXPECT_EQ(first["inputs_sha256"], second["inputs_sha256"]);
-  EXPECT_GT(first["motion"]["beats_in_motion"], 0);
+  EXPECT_GT(first["motion"]["cycles_in_motion"], 0);
   EXPECT_EQ(first["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
 }
 
 TEST_F(RunReplay, ADryRunComputesEverythingAndCommandsNothing) {
   ASSERT_EQ(run_cgsr(arguments(shipped_, {"--dry-run"})).exit_code, 0);
-  EXPECT_EQ(summary()["motion"]["beats_in_motion"], 0);
+  EXPECT_EQ(summary()["motion"]["cycles_in_motion"], 0);
   EXPECT_EQ(summary()["motion"]["odometry"], nlohmann::json::array({0.0, 0.0, 0.0}));
   EXPECT_GT(summary()["found"], 50);
 }
@@ -72,9 +72,9 @@ TEST_F(RunReplay, WithoutArmingItStandsStill) {
   text.replace(text.find("armed_at_start = true"), 21, "armed_at_start = false");
   write_text(scratch_ / "disarmed.toml", text);
   ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml")).exit_code, 0);
-  EXPECT_EQ(summary()["motion"]["beats_in_motion"], 0);
+  EXPECT_EQ(summary()["motion"]["cycles_in_motion"], 0);
   ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml", {"--arm"})).exit_code, 0);
-  EXPECT_GT(summary()["motion"]["beats_in_motion"], 0);
+  EXPECT_GT(summary()["motion"]["cycles_in_motion"], 0);
 }
 
 TEST_F(RunReplay, LiveRunsEndAfterTheirDurationWithZeroAsTheLastCommand) {

@@ -140,7 +140,7 @@ TEST_F(RunSimulated, TroubleByScriptStopsTheRobotAndIsNamed) {
                                          std::pair("[[bus_event]]\nwhat = \"bus_off\"\n", "does not take commands"),
                                          std::pair("[[bus_event]]\nwhat = \"base_silent\"\n", "odometry")}) {
     const auto motion = run(robot_with(trouble), "3.6")["motion"];
-    EXPECT_GT(motion["beats_in_motion"], 50) << trouble;
+    EXPECT_GT(motion["cycles_in_motion"], 50) << trouble;
     EXPECT_THAT(motion["latched"].get<std::string>(), HasSubstr(latched)) << trouble;
   }
   const auto gone = run_cgsr({"run", "--config", robot_with("[[camera_event]]\nwhat = \"gone\"\n")});

@@ -33,7 +33,7 @@ TEST(RouteFault, SaysWhichPlaceIsWrong) {
 TEST(Route, DrivesItsRoundAndComesPastEveryPlace) {
   RouteParameters parameters;
   Route route(parameters, square());
-  FloorBelief here{true, 0.0, 0.0, 0.0};
+  PlanarPose here{true, 0.0, 0.0, 0.0};
   int laps = 0;
   int last = 0;
   for (int image = 0; image < 30 * 60; ++image) {
@@ -63,7 +63,7 @@ TEST(Route, EndsAtTheLastPlaceWhenItIsNoRound) {
 
 TEST(RouteFault, WithoutAPoseItHalts) {
   Route route({}, square());
-  FloorBelief here{true, 0.0, 0.0, 0.0};
+  PlanarPose here{true, 0.0, 0.0, 0.0};
   for (int i = 0; i < 30; ++i) route.decide(here, kImagePeriod);
   here.known = false;
   const auto decision = route.decide(here, kImagePeriod);

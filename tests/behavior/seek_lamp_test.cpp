@@ -95,7 +95,7 @@ class Seek : public ::testing::Test {
 
   SeekLampParameters parameters_;
   std::optional<SeekLamp> seek_;
-  FloorBelief here_{true, 1.0, 3.0, 0.0};
+  PlanarPose here_{true, 1.0, 3.0, 0.0};
   double lamp_x_ = 5.5;
   double lamp_y_ = 3.0;
   double seen_within_m_ = 3.0;
@@ -144,7 +144,7 @@ TEST_F(Seek, BacksOffAsFarAsItShouldWhereThereIsRoom) {
   parameters_.back_off_m = 2.0;
   make();
   ASSERT_TRUE(run_until(SeekState::kBackingOff, 180.0));
-  const FloorBelief from = here_;
+  const PlanarPose from = here_;
   ASSERT_TRUE(run_until(SeekState::kShading, 60.0));
   EXPECT_EQ(decision_.reason, SeekReason::kFarEnough);
   EXPECT_NEAR(std::hypot(here_.x_m - from.x_m, here_.y_m - from.y_m), 2.0, 0.3);

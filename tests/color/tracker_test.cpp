@@ -1,4 +1,5 @@
 #include "pipeline/color/tracker.h"
+#include "pipeline/color/object_search.h"
 
 #include <gtest/gtest.h>
 
@@ -81,15 +82,21 @@ class Bench {
     const Sample sample{painting.photograph(1.0, 7), kFirst};
     model_ = learn({&sample, 1}, {}).value().model;
     tracker_.emplace(Tracker::create(model_, parameters, kWidth_px, kHeight_px).value());
+    search_.emplace(ObjectSearch::create(model_, parameters, kWidth_px, kHeight_px).value());
   }
   TrackedObject look(test::Painting painting) { return look(painting.photograph(1.5, ++seed_)); }
   TrackedObject look(const ImageView& image) {
     UnlimitedBudget budget;
-    return tracker_->track(image, reduce(image), budget);
+    return look(image, budget);
+  }
+  TrackedObject look(const ImageView& image, WorkBudget& budget) {
+    const imaging::ReducedImage& reduced = reduce(image);
+    const SearchResult matches = search_->search(reduced, tracker_->search_size(), budget);
+    return tracker_->track(image, reduced, matches, budget);
   }
   const imaging::ReducedImage& reduce(const ImageView& image) {
-    const int factor = tracker_->reduction(image.width_px, image.height_px);
-    EXPECT_TRUE(imaging::reduce(image, factor, tracker_->labels(), reduced_));
+    const int factor = imaging::reduction_for(image.width_px, image.height_px, search_->object_shorter_side_px());
+    EXPECT_TRUE(imaging::reduce(image, factor, search_->labels(), reduced_));
     return reduced_;
   }
   TrackedObject see(const Box& object, const Light& light = kLearnedLight) { return look(room(&object, light)); }
@@ -101,6 +108,7 @@ class Bench {
   ColorModel model_;
   imaging::ReducedImage reduced_;
   std::optional<Tracker> tracker_;
+  std::optional<ObjectSearch> search_;
   std::uint32_t seed_ = 100;
 };
 
@@ -337,7 +345,7 @@ TEST(TrackerFault, WithoutABudgetItStillFollowsWhatItSaw) {
     const Box place = moved(kFirst.x + 4 * i, kFirst.y);
     auto painting = room(&place);
     const ImageView image = painting.photograph(1.0, 9);
-    const auto found = bench.tracker().track(image, bench.reduce(image), none);
+    const auto found = bench.look(image, none);
     ASSERT_TRUE(found.found) << i;
     EXPECT_GT(overlap(found.box, place), 0.6) << i;
   }

@@ -1,4 +1,4 @@
-#include "pipeline/motion_limits.h"
+#include "pipeline/motion/motion_limits.h"
 
 #include <algorithm>
 #include <cmath>

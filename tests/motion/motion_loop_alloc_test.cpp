@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "pipeline/motion_loop.h"
+#include "pipeline/motion/motion_loop.h"
 #include "tests/motion/rig.h"
 #include "tests/support/allocation_guard.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/motion_loop.h"
+#include "pipeline/motion/motion_loop.h"
 #include "tests/motion/rig.h"
 
 namespace cgsr {

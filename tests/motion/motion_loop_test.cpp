@@ -1,4 +1,4 @@
-#include "pipeline/motion_loop.h"
+#include "pipeline/motion/motion_loop.h"
 
 #include <cmath>
 #include <set>

@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "pipeline/motion_loop.h"
+#include "pipeline/motion/motion_loop.h"
 #include "tests/motion/scripted_drive.h"
 
 namespace cgsr {

@@ -42,8 +42,8 @@ TEST(StageAlloc, FramesNeitherAllocateNorFaultAfterTheWarmUp) {
 
   const auto cycle = [&](int i) {
     runner.begin_frame(frame_start(i));
-    const auto& counted = runner.run(rare);
-    const auto& passed = runner.run(slow, counted);
+    const int counted = runner.run(rare).value;
+    const int passed = runner.run(slow, counted).value;
     runner.run(bounded, passed);
     const auto& record = runner.end_frame();
     images.dealt_with(record.image_sequence, record.started, record.finished);

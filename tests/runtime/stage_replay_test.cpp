@@ -25,7 +25,7 @@ class Loop {
   FrameRecord frame(int i, const FrameRecord* repeat = nullptr) {
     runner_.begin_frame(frame_start(i), repeat);
     const auto& found = runner_.run(search_, i);
-    output_ = runner_.run(mix_, found) * 31 + found;
+    output_ = runner_.run(mix_, found).value * 31 + found.value;
     stops_ = stop_.look();
     return runner_.end_frame();
   }

@@ -27,7 +27,7 @@ class Loop {
     track_takes_ = track_takes;
     runner_.begin_frame(frame_start(next_));
     const auto& tracked = runner_.run(track_, next_);
-    last_ = runner_.run(decide_, tracked);
+    last_ = runner_.run(decide_, tracked.value).value;
     ++next_;
     return runner_.end_frame();
   }
@@ -266,16 +266,35 @@ TEST(Stage, ThatWorksInUnitsEndsInTimeWhenLive) {
   EXPECT_TRUE(record.stages[0].refused);
 }
 
-TEST(Stage, TakesAnAgedInputWithOrWithoutItsAge) {
-  Single with([](const Aged<int>& input) { return input.age; });
-  Single without([](int input) { return input; });
-  Aged<int> input;
-  input.value = 5;
-  input.age = milliseconds(66);
-  with.frame(input);
-  without.frame(input);
-  EXPECT_EQ(with.stage.last().value, milliseconds(66));
-  EXPECT_EQ(without.stage.last().value, 5);
+struct Missing {
+  using Output = int;
+  static constexpr std::string_view kName = "only";
+  int update(int input) { return input; }
+};
+
+TEST(Stage, WithoutAWorkerHasItsTurnAndTheDefaultOutput) {
+  SimulatedClock clock;
+  MotionStop stop;
+  StageRunner runner(clock, schedule_of({stage_row("only", 1, 0, 1000)}), BudgetSource::kUnits, stop);
+  Stage<Missing> stage(nullptr);
+  ASSERT_TRUE(runner.bind(stage));
+  runner.begin_frame(frame_start(0));
+  EXPECT_EQ(runner.run(stage, 7).value, 0);
+  EXPECT_TRUE(stage.last().fresh());
+  EXPECT_EQ(runner.end_frame().stages[0].outcome, StageOutcome::kRan);
+}
+
+// Whoever reads an output says how old is too old.
+TEST(Aged, IsReadOnlyUpToTheAgeThatItsReaderStates) {
+  Aged<int> never;
+  EXPECT_EQ(never.within(Duration::max()), nullptr);
+  const Aged<int> now{5, {}, Duration::zero()};
+  ASSERT_NE(now.within(Duration::zero()), nullptr);
+  EXPECT_EQ(*now.within(Duration::zero()), 5);
+  const Aged<int> older{5, {}, milliseconds(66)};
+  EXPECT_EQ(older.within(milliseconds(65)), nullptr);
+  EXPECT_NE(older.within(milliseconds(66)), nullptr);
+  static_assert(!std::is_convertible_v<Aged<int>, int>);
 }
 
 TEST(StageRunner, RefusesStagesAndRowsThatDoNotMatch) {

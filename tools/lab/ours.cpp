@@ -3,8 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "pipeline/imaging/reduce.h"
-#include "platform/count_marks.h"
+#include "pipeline/stages/color_stages.h"
 
 namespace cgsr::lab {
 namespace {
@@ -17,43 +16,24 @@ class OurTracker final : public BoxTracker {
     const std::array samples{color::Sample{image.view(), box}};
     const auto learned = color::learn(samples, configuration_.learn);
     if (!learned) return tl::unexpected(learned.error());
-    auto tracker = color::Tracker::create(learned->model, configuration_.track, image.bgr.cols, image.bgr.rows);
-    if (!tracker) return tl::unexpected(tracker.error());
-    tracker_ = std::move(*tracker);
-    reduced_.emplace(image.bgr.cols, image.bgr.rows);
+    auto loop = stages::ColorLoop::make(learned->model, configuration_.track, image.bgr.cols, image.bgr.rows);
+    if (!loop) return tl::unexpected(loop.error());
+    loop_ = std::move(*loop);
     if (start_ == Start::kAnywhere) return {};
-    if (!reduce(image.view())) return fail("the image is none that can be reduced");
-    tracker_->place(image.view(), *reduced_, box);
+    if (!loop_->place(image.view(), box)) return fail("the image is none that can be reduced");
     return {};
   }
 
   Sighting track(const Image& image) override {
-    const ImageView view = image.view();
-    count_stage_begin();
-    const bool reduced = reduce(view);
-    count_stage_end("labels");
-    if (!reduced) return {};
-    UnlimitedBudget budget;
-    count_stage_begin();
-    const color::SearchResult matches = tracker_->search(*reduced_, budget);
-    count_stage_end("search");
-    count_stage_begin();
-    const color::TrackedObject object = tracker_->track(view, *reduced_, matches, budget);
-    count_stage_end("track");
+    const color::TrackedObject object = loop_->track(image.view());
     if (!object.found) return {};
     return {object.box, object.light, object.exact_light, object.divergence};
   }
 
  private:
-  bool reduce(const ImageView& view) {
-    const int factor = tracker_->reduction(view.width_px, view.height_px);
-    return imaging::reduce(view, factor, tracker_->labels(), *reduced_).has_value();
-  }
-
   config::Color configuration_;
   Start start_;
-  std::optional<color::Tracker> tracker_;
-  std::optional<imaging::ReducedImage> reduced_;
+  std::optional<stages::ColorLoop> loop_;
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the shared library cgsr-simulation.so exports: src/robot/simulation_plugin.cpp looks for these two names.
+// What the shared library cgsr-simulation.so exports: src/boot/simulation_plugin.cpp looks for these two names.
 #include <exception>
 #include <string>
 

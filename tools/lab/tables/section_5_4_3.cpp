@@ -16,9 +16,9 @@
 
 #include "pipeline/color/model_file.h"
 #include "platform/config/canonical.h"
+#include "src/boot/robot.h"
 #include "src/config/load.h"
 #include "src/output/overlay.h"
-#include "src/robot/robot.h"
 #include "tools/lab/ball_scoring.h"
 #include "tools/lab/experiment.h"
 
@@ -42,7 +42,8 @@ struct Onlooker {
 /// What became of the images from which on the robot tracks.
 class Judge {
  public:
-  Judge(const Pinhole& pinhole, int width_px, int height_px) : pinhole_(pinhole), overlay_(width_px, height_px) {}
+  Judge(const config::Pinhole& pinhole, int width_px, int height_px)
+      : pinhole_(pinhole), overlay_(width_px, height_px) {}
 
   Result<void> make(const config::Robot& robot, double focal_px, int width_px, int height_px) {
     const auto model = color::load_model(robot.run.model);
@@ -65,25 +66,25 @@ class Judge {
     return {};
   }
 
-  void look(const ImageView& image, const robot::VisionReport& report, const std::optional<hal::ImageTruth>& truth) {
-    const Decision& decision = report.decision;
+  void look(const ImageView& image, const sinks::ImageReport& report, const std::optional<hal::ImageTruth>& truth) {
+    const stages::FrameResult& frame = report.frame;
+    const stages::LampReport& lamp = frame.lamp.value;
+    const color::TrackedObject& object = frame.objects.value.first().object;
+    const render::ShadeMasks* const masks = report.picture->masks.get();
     ++images_;
-    const bool seen = decision.lamp.has_board && reason_of(decision.lamp).empty();
-    if (seen && decision.lamp.known) keep("(a) the probes throw shadows, the lamp is found", image, decision, 0);
-    const bool tracks = decision.seek.state == behavior::SeekState::kTracking;
+    const bool seen = lamp.has_board && reason_of(lamp).empty();
+    if (seen && lamp.known) keep("(a) the probes throw shadows, the lamp is found", image, report, 0);
+    const bool tracks = frame.decision.value.state == behavior::text(behavior::SeekState::kTracking);
     if (!tracks || !truth) return;
-    if (decision.shade.masks != nullptr) keep("(b) what may lie in shadow", image, decision, 1);
+    if (masks != nullptr) keep("(b) what may lie in shadow", image, report, 1);
 
     std::optional<Box> orange;
     if (truth->in_view) orange = truth->box;
     was_there_ = was_there_ || truth->there;
     std::optional<Box> said;
-    if (decision.object.found) said = decision.object.box;
+    if (object.found) said = object.box;
     color::ShadeMaskView mask;
-    if (decision.shade.masks != nullptr) {
-      mask = {decision.shade.masks->possibly_shaded.data(), decision.shade.masks->width, decision.shade.masks->height,
-              decision.shade.masks->width};
-    }
+    if (masks != nullptr) mask = {masks->possibly_shaded.data(), masks->width, masks->height, masks->width};
     with_.add(orange, {}, said);
     part_of(*truth).add(orange, {}, said);
     for (Onlooker& one : without_) watch(one, image, {}, orange);
@@ -91,14 +92,14 @@ class Judge {
       for (Onlooker& one : curve_) watch(one, image, one.with_mask ? mask : color::ShadeMaskView{}, orange);
     }
     const bool right = orange && said && !intersection(*orange, *said).empty();
-    if (right && height_of(*truth) > 0.6) keep("(c) above the table", image, decision, 2);
+    if (right && height_of(*truth) > 0.6) keep("(c) above the table", image, report, 2);
     if (right && height_of(*truth) < 0.3 && truth->object_lit_share < kInShadow) {
-      keep("(d) under it, in shadow", image, decision, 3);
+      keep("(d) under it, in shadow", image, report, 3);
     }
     if (right && height_of(*truth) < 0.3 && truth->object_lit_share > kLit) {
-      keep("(e) under it, lit", image, decision, 4);
+      keep("(e) under it, lit", image, report, 4);
     }
-    if (was_there_ && !truth->there) keep("(f) a brown ball", image, decision, 5);
+    if (was_there_ && !truth->there) keep("(f) a brown ball", image, report, 5);
   }
 
   [[nodiscard]] std::vector<Picture> pictures() const {
@@ -150,20 +151,21 @@ class Judge {
     return parts_[3];
   }
 
-  void keep(const char* caption, const ImageView& image, const Decision& decision, std::size_t at) {
+  void keep(const char* caption, const ImageView& image, const sinks::ImageReport& report, std::size_t at) {
     Kept& kept = kept_.at(at);
     if (++kept.seen > 40 || (kept.seen > 1 && kept.seen != 40)) return;
     app::OverlayFacts facts;
     facts.image_number = static_cast<std::uint64_t>(images_);
-    if (decision.object.found) facts.box = decision.object.box;
-    if (decision.shade.status == ShadeStatus::kMasked && at > 0) facts.shade = &decision.shade.picture;
-    facts.lines.emplace_back(behavior::text(decision.seek.state));
+    const color::TrackedObject& object = report.frame.objects.value.first().object;
+    if (object.found) facts.box = object.box;
+    if (at > 0) facts.shade = report.picture->masks.get();
+    facts.lines.emplace_back(report.frame.decision.value.state);
     kept.best.caption = caption;
     kept.best.jpeg.clear();
     cv::imencode(".jpg", overlay_.draw(image, facts), kept.best.jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
   }
 
-  Pinhole pinhole_;
+  config::Pinhole pinhole_;
   app::Overlay overlay_;
   UnlimitedBudget budget_;
   int images_ = 0;
@@ -204,43 +206,44 @@ Result<Report> section_5_4_3(const Setting& setting) {
   const double focal_px = 0.5 * (config->camera.pinhole.fx_px + config->camera.pinhole.fy_px);
   if (auto made = judge.make(*config, focal_px, width_px, height_px); !made) return tl::unexpected(made.error());
 
-  robot::RunOptions options;
+  boot::RunOptions options;
   if (setting.videos) {
     std::filesystem::create_directories(*setting.videos);
     options.video = (*setting.videos / fmt::format("section-5.4.3-{}.mkv", setting.seed)).string();
   }
   int images = 0;
-  options.witness = [&](const ImageView& image, const robot::VisionReport& report,
-                        const std::optional<hal::ImageTruth>& truth) {
+  options.observer = [&](const ImageView& image, const sinks::ImageReport& report,
+                         const std::optional<hal::ImageTruth>& truth) {
     judge.look(image, report, truth);
     if (++images % 30 == 0) {
-      setting.progress(fmt::format("{:.0f} s: {}", images / 30.0, behavior::text(report.decision.seek.state)));
+      setting.progress(fmt::format("{:.0f} s: {}", images / 30.0, report.frame.decision.value.state));
     }
   };
-  auto robot = robot::Robot::build(*config, options);
+  auto robot = boot::Robot::build(*config, options);
   if (!robot) return tl::unexpected(robot.error());
   StopRequest stop;
   if (auto done = (*robot)->run(stop); !done) return tl::unexpected(done.error());
 
-  const auto& housekeeping = (*robot)->housekeeping();
+  const boot::Outputs& outputs = (*robot)->state().outputs;
   Report report;
   report.name = "section-5.4.3";
   report.title = fmt::format("Algorithm 5.2 from exploring to tracking, {} images", images);
   report.config_sha256 = config::hash(*config);
   report.seed = setting.seed;
   report.rows.push_back({"the run", "images", "", 1821.0, static_cast<double>(images), std::nullopt, 1});
-  for (const robot::SeekStep& step : housekeeping.tally().seek) {
-    report.rows.push_back({fmt::format("{}: {}", behavior::text(step.state), behavior::text(step.reason)), "begins at",
-                           "s", std::nullopt, step.at_s, std::nullopt, 1});
+  for (const sinks::TaskStep& step : outputs.statistics->run().task) {
+    report.rows.push_back(
+        {fmt::format("{}: {}", step.state, step.reason), "begins at", "s", std::nullopt, step.at_s, std::nullopt, 1});
   }
-  if (const robot::LightFigures* light = housekeeping.light(); light != nullptr && light->compared > 0) {
-    const auto compared = static_cast<int>(light->compared);
+  if (outputs.truth != nullptr && outputs.truth->lamp().compared > 0) {
+    const sinks::LampTruthStatistics& light = outputs.truth->lamp();
+    const auto compared = static_cast<int>(light.compared);
     report.rows.push_back(
-        {"lamp's error in the world", "at the end", "cm", std::nullopt, 100.0 * light->last_m, std::nullopt, 1});
+        {"lamp's error in the world", "at the end", "cm", std::nullopt, 100.0 * light.last_m, std::nullopt, 1});
     report.rows.push_back(
-        {"lamp's error in the world", "mean", "cm", std::nullopt, 100.0 * light->mean_m, std::nullopt, compared});
+        {"lamp's error in the world", "mean", "cm", std::nullopt, 100.0 * light.mean_m, std::nullopt, compared});
     report.rows.push_back(
-        {"lamp's error in the world", "worst", "cm", std::nullopt, 100.0 * light->worst_m, std::nullopt, compared});
+        {"lamp's error in the world", "worst", "cm", std::nullopt, 100.0 * light.worst_m, std::nullopt, compared});
   }
   add_score("with the mask", judge.with(), kTheirsWith, report);
   add_score("without a mask", judge.without(), kTheirsWithout, report);

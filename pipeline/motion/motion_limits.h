@@ -1,0 +1,90 @@
+#pragma once
+
+#include <string>
+
+#include "hal/drive.h"
+#include "platform/parameters.h"
+
+namespace cgsr {
+
+/// The rectangle of the odometry frame (origin: where the robot was started, x: where it looked then) that the robot
+/// may not leave.
+struct KeepInParameters {
+  bool enabled = true;
+  double min_x_m = -5.0;
+  double max_x_m = 5.0;
+  double min_y_m = -5.0;
+  double max_y_m = 5.0;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.flag("enabled", self.enabled, "whether the area is kept at all; the odometry it rests on drifts");
+    visit.number("min_x_m", self.min_x_m, {-1000.0, 1000.0}, "m", "rear edge, seen from the pose of the start");
+    visit.number("max_x_m", self.max_x_m, {-1000.0, 1000.0}, "m", "front edge");
+    visit.number("min_y_m", self.min_y_m, {-1000.0, 1000.0}, "m", "right edge");
+    visit.number("max_y_m", self.max_y_m, {-1000.0, 1000.0}, "m", "left edge");
+  }
+
+  /// \return what is wrong with the keys together; empty when nothing is.
+  [[nodiscard]] std::string inconsistency() const {
+    return min_x_m < max_x_m && min_y_m < max_y_m
+               ? ""
+               : "the area is empty: min_x_m must be below max_x_m, and min_y_m below max_y_m";
+  }
+};
+
+/// How fast the wheels may be told to go, and when they are told to stop. The robot is blind backwards and has no
+/// obstacle sensor: the defaults are slow and never backwards.
+struct MotionParameters {
+  double max_forward_mps = 0.4;
+  double max_backward_mps = 0.0;
+  double max_acceleration_mps2 = 0.4;
+  double max_deceleration_mps2 = 0.8;
+  double max_turn_radps = 1.0;
+  double max_turn_acceleration_radps2 = 2.0;
+  double reaction_s = 0.2;
+  double goal_timeout_s = 0.150;
+  double feedback_timeout_s = 0.100;
+  double max_hold_s = 2.0;
+  bool armed_at_start = false;
+  KeepInParameters keep_in;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "fastest forwards");
+    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s", "fastest backwards, where it is blind");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest gain of speed");
+    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "steepest loss of speed towards a slower goal; a stop does not wait for it");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn");
+    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
+                 "steepest change of the turn rate");
+    visit.number("reaction_s", self.reaction_s, {0.0, 1.0}, "s",
+                 "from a command to the base obeying it, for the keep-in area");
+    visit.number("goal_timeout_s", self.goal_timeout_s, {0.02, 0.5}, "s",
+                 "age of the newest goal, counted from its image's stamp, past which zero is commanded");
+    visit.number("feedback_timeout_s", self.feedback_timeout_s, {0.02, 0.5}, "s",
+                 "age of the newest odometry past which zero is commanded and the robot disarms");
+    visit.number("max_hold_s", self.max_hold_s, {0.1, 60.0}, "s",
+                 "how long a passing cause may hold the robot before it disarms and must be armed again");
+    visit.flag("armed_at_start", self.armed_at_start, "arms itself once, when it first may: for simulation only");
+    visit.section("keep_in", self.keep_in, "The area the robot may not leave, in the frame of its odometry");
+  }
+};
+
+/// \return `goal` within the speed and turn limits.
+hal::Twist clamp(const hal::Twist& goal, const MotionParameters& limits);
+
+/// The fastest speed v of `forward_mps`' sign, at most itself, from which the robot still stops inside the area:
+///
+///     v t + v^2 / (2 a) <= D    and    u t + v^2 / (2 a) <= D
+///
+/// t: age_s + reaction_s, in which the robot goes on at the speed u that it has; a: the deceleration limit; D: the way to
+/// the nearest edge over all headings that it can reach until it stands, at the turn limit and to either side. Outside the
+/// area only motion that leads back in is left.
+/// \param odometry  finite.
+/// \param age_s  of the odometry, >= 0.
+double speed_within_area(double forward_mps, const hal::Odometry& odometry, double age_s,
+                         const MotionParameters& limits);
+
+}  // namespace cgsr

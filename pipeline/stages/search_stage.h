@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string_view>
+
+#include "pipeline/color/object_search.h"
+#include "pipeline/runtime/aged.h"
+#include "pipeline/stages/decode_stage.h"
+#include "pipeline/stages/tracked_objects.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::stages {
+
+/// Chapter 3's search (Alg. 3.2): the windows of the whole image that look most like the object.
+///
+/// Threads: one. After construction nothing here allocates.
+class SearchStage {
+ public:
+  using Output = color::SearchResult;
+  static constexpr std::string_view kName = "search";
+  static constexpr std::string_view kMeaning = "Windows that look like the object, in the whole image (Alg. 3.2).";
+  static constexpr runtime::StageParameters kRow{1, 0, 7500, 0, runtime::OnOverrun::kSkip};
+
+  /// \param first_size  with which the first image is searched: the tracker's search_size().
+  SearchStage(color::ObjectSearch search, const color::SearchSize& first_size)
+      : search_(std::move(search)), first_size_(first_size) {}
+
+  /// \param view  of this image. \param objects  as the last image left them: they say which window size to search with.
+  Output update(WorkBudget& budget, const runtime::Aged<View>& view, const runtime::Aged<TrackedObjects>& objects);
+
+ private:
+  color::ObjectSearch search_;
+  color::SearchSize first_size_;
+};
+
+}  // namespace cgsr::stages

@@ -1,0 +1,77 @@
+#include "pipeline/stages/shade_stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+namespace cgsr::stages {
+namespace {
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+}
+
+constexpr std::size_t kMasks = 6;  // written, last, two on their way to housekeeping, one read there, one to spare
+
+render::ShadeMasks empty_masks(const render::ShadeParameters& parameters) {
+  const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
+  return {parameters.width, parameters.height, std::vector<std::uint8_t>(cells), std::vector<std::uint8_t>(cells)};
+}
+
+}  // namespace
+
+std::string_view name_of(ShadeStatus status) {
+  switch (status) {
+    case ShadeStatus::kMasked:
+      return "masked";
+    case ShadeStatus::kNoMap:
+      return "no map";
+    case ShadeStatus::kNoLamp:
+      return "no lamp known";
+    case ShadeStatus::kLampUnsure:
+      return "the lamp is not known well enough";
+    case ShadeStatus::kPoseUnknown:
+      return "pose not known";
+    case ShadeStatus::kNoRoom:
+      return "all mask buffers are in use";
+  }
+  return "unknown";
+}
+
+ShadeStage::ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Camera& camera,
+                       const ShadeStageParameters& parameters)
+    : map_(std::move(map)),
+      camera_(camera),
+      parameters_(parameters),
+      volumes_(*map_, parameters.masks),
+      masks_(kMasks, empty_masks(parameters.masks)) {}
+
+ShadowMasks ShadeStage::update(const runtime::Aged<PoseEstimate>& pose, const runtime::Aged<LampReport>& lamp) {
+  const PoseEstimate* const now = pose.within(Duration::zero());
+  if (now == nullptr || !now->known()) return {ShadeStatus::kPoseUnknown, {}};
+  const LampReport* const report = lamp.within(kMaxLampAge);
+  return update(now->camera.X_WC, now->camera.covariance, report != nullptr && report->known ? &report->lamp : nullptr);
+}
+
+ShadowMasks ShadeStage::update(const geometry::Pose& X_WC, const geometry::Matrix6d& covariance,
+                               const illumination::KnownLamp* lamp) {
+  if (lamp == nullptr) return {ShadeStatus::kNoLamp, {}};
+  const double lamp_sigma_m = largest_sigma(lamp->covariance);
+  if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) return {ShadeStatus::kLampUnsure, {}};
+  // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way.
+  Eigen::Vector3d way = lamp->p_WL - p_WL_kept_;
+  if (!(way.norm() <= parameters_.max_lamp_shift_m)) {
+    p_WL_kept_ = lamp->p_WL;
+    way.setZero();
+  }
+  const render::ShadeErrors errors{lamp->covariance + way * way.transpose(), covariance};
+  auto masks = masks_.take();
+  if (!masks) return {ShadeStatus::kNoRoom, {}};
+  masks.edit() = volumes_.look(X_WC, camera_, p_WL_kept_, errors);
+  return {ShadeStatus::kMasked, std::move(masks)};
+}
+
+}  // namespace cgsr::stages

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string_view>
+
+#include "pipeline/geometry/camera.h"
+#include "pipeline/geometry/pose.h"
+#include "pipeline/illumination/lamp_filter.h"
+#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/stages/probes_stage.h"
+#include "pipeline/world/map.h"
+#include "platform/description.h"
+#include "platform/parameters.h"
+#include "platform/pool.h"
+
+namespace cgsr::stages {
+
+/// Section [shade] of a robot's file.
+struct ShadeStageParameters {
+  double max_lamp_sigma_m = 0.3;
+  double max_lamp_shift_m = 0.01;
+  render::ShadeParameters masks;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("max_lamp_sigma_m", self.max_lamp_sigma_m, {0.001, 10.0}, "m",
+                 "a lamp that is known no better makes no masks");
+    visit.number("max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
+                 "so far the lamp's estimate may wander before its silhouettes are made anew");
+    visit.section("masks", self.masks, "How shaded regions are found (5.2)");
+  }
+};
+
+enum class ShadeStatus : std::uint8_t {
+  kMasked,       ///< there are masks.
+  kNoMap,        ///< what could throw shadows is not known.
+  kNoLamp,       ///< no lamp is known: ambient light only.
+  kLampUnsure,   ///< known too roughly.
+  kPoseUnknown,  ///< the camera's pose is not known.
+  kNoRoom,       ///< every mask buffer is still read by somebody.
+};
+std::string_view name_of(ShadeStatus status);
+
+/// What lies in shadow in an image.
+struct ShadowMasks {
+  ShadeStatus status = ShadeStatus::kNoMap;
+  Lease<render::ShadeMasks> masks;  ///< of this image; empty: none, and `status` says why.
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.text("shade", name_of(self.status), "whether there are shadow masks, or why not");
+  }
+};
+
+/// Chapter 5's second half: map, pose and lamp to the two masks of shaded regions (5.2).
+///
+/// Threads: one. After construction nothing here allocates.
+class ShadeStage {
+ public:
+  using Output = ShadowMasks;
+  static constexpr std::string_view kName = "shade";
+  static constexpr std::string_view kMeaning =
+      "What lies in the lamp's shadow: the masks, from map, pose and lamp (5.2).";
+  static constexpr runtime::StageParameters kRow{2, 1, 7000, 0, runtime::OnOverrun::kSkip};
+  static constexpr Duration kMaxLampAge = seconds(0.5);  ///< of the probes' report that is used.
+
+  /// \param map  not null.  \param camera  of the images that come.
+  ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Camera& camera,
+             const ShadeStageParameters& parameters);
+
+  /// \param pose  of this image: masks of an older one would lie beside the shadows.
+  Output update(const runtime::Aged<PoseEstimate>& pose, const runtime::Aged<LampReport>& lamp);
+
+  /// The same with pose and lamp as their owner knows them. \param lamp  null: none is known.
+  Output update(const geometry::Pose& X_WC, const geometry::Matrix6d& covariance, const illumination::KnownLamp* lamp);
+
+ private:
+  std::shared_ptr<const world::Map> map_;
+  geometry::Camera camera_;
+  ShadeStageParameters parameters_;
+  render::ShadowVolumes volumes_;
+  Pool<render::ShadeMasks> masks_;
+  Eigen::Vector3d p_WL_kept_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+};
+
+}  // namespace cgsr::stages

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <utility>
+
+#include "pipeline/behavior/follow.h"
+#include "pipeline/behavior/route.h"
+#include "pipeline/behavior/seek_lamp.h"
+#include "pipeline/geometry/camera.h"
+#include "pipeline/stages/task.h"
+
+namespace cgsr::stages {
+
+inline constexpr Duration kMaxPoseAge = seconds(0.5);  ///< of a pose that a task drives by.
+inline constexpr Duration kMaxLampReportAge = seconds(0.5);
+
+/// Keeps the tracked object centred and at a distance.
+class FollowTask final : public Task {
+ public:
+  /// \param camera  of the images that come: focal length and centre turn columns into bearings.
+  FollowTask(behavior::Follow follow, const geometry::Camera& camera) : follow_(std::move(follow)), camera_(camera) {}
+  Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
+
+ private:
+  behavior::Follow follow_;
+  geometry::Camera camera_;
+};
+
+/// Drives from place to place by the estimated pose.
+class RouteTask final : public Task {
+ public:
+  explicit RouteTask(behavior::Route route) : route_(std::move(route)) {}
+  Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
+
+ private:
+  behavior::Route route_;
+};
+
+/// Algorithm 5.2: looks for the lamp, measures it, backs off, and tracks an object with the shadow masks.
+class LampTask final : public Task {
+ public:
+  explicit LampTask(behavior::SeekLamp seek) : seek_(std::move(seek)) {}
+  [[nodiscard]] Requests first_requests() const override { return {.track = seek_.tracks(), .check = {}, .lamps = {}}; }
+  Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
+
+ private:
+  behavior::SeekLamp seek_;
+};
+
+}  // namespace cgsr::stages

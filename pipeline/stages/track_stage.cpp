@@ -1,0 +1,52 @@
+#include "pipeline/stages/track_stage.h"
+
+namespace cgsr::stages {
+namespace {
+
+color::ShadeMaskView mask_of(const runtime::Aged<ShadowMasks>& shade, Duration max_age) {
+  const ShadowMasks* const masks = shade.within(max_age);
+  if (masks == nullptr || !masks->masks) return {};
+  const render::ShadeMasks& cells = *masks->masks;
+  return {cells.possibly_shaded.data(), cells.width, cells.height, cells.width};
+}
+
+ObjectTrack track_ball(color::IntegratedTracker& tracker, const ImageView& image, const color::ShadeMaskView& mask,
+                       WorkBudget& budget) {
+  ObjectTrack track;
+  track.ball = tracker.track(image, mask, budget);
+  track.object = {track.ball.found, track.ball.box, track.ball.divergence, track.ball.light, track.ball.light};
+  return track;
+}
+
+}  // namespace
+
+TrackedObjects TrackStage::update(WorkBudget& budget, const ImageView& image, const runtime::Aged<View>& view,
+                                  const runtime::Aged<color::SearchResult>& matches,
+                                  const runtime::Aged<ShadowMasks>& shade, const Requests& requests) {
+  last_.count = 1;
+  last_.tracks.front() = {};
+  if (!requests.track) return last_;
+  if (auto* const ball = std::get_if<color::IntegratedTracker>(&tracker_)) {
+    last_.tracks.front() = track_ball(*ball, image, mask_of(shade, kMaxMaskAge), budget);
+    return last_;
+  }
+  auto& tracker = std::get<color::Tracker>(tracker_);
+  const View* const now = view.within(Duration::zero());
+  if (now != nullptr && now->reduced) {
+    const auto* const found = matches.within(kMaxMatchesAge);
+    last_.tracks.front().object =
+        tracker.track(image, *now->reduced, found != nullptr ? *found : color::SearchResult{}, budget);
+  }
+  last_.next_search = tracker.search_size();
+  return last_;
+}
+
+TrackedObjects TrackStage::place(const ImageView& image, const View& view, const Box& box) {
+  if (auto* const tracker = std::get_if<color::Tracker>(&tracker_); tracker != nullptr && view.reduced) {
+    tracker->place(image, *view.reduced, box);
+    last_.next_search = tracker->search_size();
+  }
+  return last_;
+}
+
+}  // namespace cgsr::stages

@@ -1,0 +1,97 @@
+#include "src/boot/robot.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "platform/config/canonical.h"
+#include "src/boot/boot_pose.h"
+#include "src/boot/robot_plan.h"
+#include "src/boot/run_loops.h"
+
+namespace cgsr::boot {
+namespace {
+
+template <class Visitor>
+void visit_rings(const tasks::Links& links, Visitor visit) {
+  visit("images", links.images.statistics());
+  visit("goals", links.goals.statistics());
+  visit("odometry", links.odometry.statistics());
+  visit("arm_requests", links.arm_requests.statistics());
+  visit("switch_requests", links.switch_requests.statistics());
+  visit("switch_answers", links.switch_answers.statistics());
+  visit("switchings", links.switchings.statistics());
+  visit("reports", links.reports.statistics());
+  visit("pictures", links.pictures.statistics());
+  visit("motions", links.motions.statistics());
+}
+
+void add_rings(const tasks::Links& links, sinks::Summary& summary) {
+  const auto& capture = links.capture;
+  summary.json["capture"] = {{"images", capture.images.load()},
+                             {"timeouts", capture.timeouts.load()},
+                             {"no_slot", capture.no_slot.load()},
+                             {"corrupt", capture.corrupt.load()},
+                             {"disconnected", capture.disconnected.load()}};
+  summary.text += "\nring          capacity  high water  pushed  dropped  skipped\n";
+  visit_rings(links, [&summary](const char* name, const RingStatistics& ring) {
+    summary.json["rings"][name] = {{"capacity", ring.capacity},
+                                   {"high_water", ring.high_water},
+                                   {"pushed", ring.pushed},
+                                   {"dropped", ring.dropped},
+                                   {"skipped", ring.skipped}};
+    summary.text += fmt::format("{:<14}{:>8}{:>12}{:>8}{:>9}{:>9}\n", name, ring.capacity, ring.high_water, ring.pushed,
+                                ring.dropped, ring.skipped);
+  });
+}
+
+/// Only a pose that the robot was sure of to the end is worth anything to the next run.
+Result<void> leave_pose_for_next_run(const RobotState& state) {
+  const behavior::PlanarPose& robot = state.outputs.statistics->run().last_pose.robot;
+  const std::string& file = state.setup.config.localization.start.file;
+  if (file.empty() || !robot.known) return {};
+  return leave_pose(file, geometry::pose_on_floor(robot.x_m, robot.y_m, robot.heading_rad));
+}
+
+}  // namespace
+
+Robot::Robot(const config::Robot& config, const RunOptions& options) {
+  state_.setup = {config, options};
+  add_robot_steps(plan_, state_);
+}
+
+Result<std::unique_ptr<Robot>> Robot::build(const config::Robot& config, const RunOptions& options) {
+  std::unique_ptr<Robot> robot(new Robot(config, options));
+  if (auto booted = robot->plan_.run(); !booted) return tl::unexpected(booted.error());
+  return robot;
+}
+
+Robot::Check Robot::check(const config::Robot& config) {
+  Check check;
+  check.robot.reset(new Robot(config, {}));
+  check.problems = check.robot->plan_.check();
+  return check;
+}
+
+Result<void> Robot::run(StopRequest& stop) {
+  Result<void> done = state_.setup.live() ? run_live(state_, stop) : run_lock_step(state_, stop);
+  state_.outputs.sinks.finish();
+  if (auto left = leave_pose_for_next_run(state_); !left && done) return left;
+  return done;
+}
+
+sinks::Summary Robot::summary(const std::string& ended_by) {
+  const config::Robot& config = state_.setup.config;
+  sinks::Summary summary = state_.outputs.sinks.summary();
+  summary.text = fmt::format("\nended by {}\n", ended_by) + summary.text;
+  summary.json["config_sha256"] = config::hash(config);
+  summary.json["color_sha256"] = config::hash(config.color);
+  summary.json["ended_by"] = ended_by;
+  summary.json["problems"] = state_.report.problems;
+  for (const std::string& problem : state_.report.problems) summary.text += fmt::format("problem: {}\n", problem);
+  add_rings(state_.links, summary);
+  summary.text += fmt::format("\nconfiguration {}\n", config::hash(config));
+  return summary;
+}
+
+}  // namespace cgsr::boot

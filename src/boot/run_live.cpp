@@ -1,0 +1,163 @@
+#include <algorithm>
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "pipeline/runtime/robot_threads.h"
+#include "platform/memory.h"
+#include "platform/service.h"
+#include "platform/thread.h"
+#include "src/boot/run_loops.h"
+#include "src/tasks/capture_task.h"
+#include "src/tasks/motion_task.h"
+
+namespace cgsr::boot {
+namespace {
+
+constexpr Duration kSupervisorPeriod = seconds(0.1);
+constexpr Duration kHousekeepingPeriod = seconds(0.01);
+
+/// The bodies of the threads of docs/threads.md: each a task and the wait between its steps.
+class LiveLoops {
+ public:
+  LiveLoops(tasks::CaptureTask& capture, tasks::VisionTask& vision, tasks::MotionTask& motion,
+            tasks::SwitchTask& switches, tasks::HousekeepingTask& housekeeping, RealClock& clock, StopRequest& stop,
+            tasks::Links& links)
+      : capture_(capture),
+        vision_(vision),
+        motion_(motion),
+        switches_(switches),
+        housekeeping_(housekeeping),
+        clock_(clock),
+        stop_(stop),
+        links_(links) {
+    const MonoTime now = clock.now();
+    capture_beat_ = heartbeats.add("capture", 3 * capture.period() + seconds(0.5), now);
+    vision_beat_ = heartbeats.add("vision", 3 * capture.period() + seconds(0.5), now);
+    motion_beat_ = heartbeats.add("motion", seconds(0.2), now);
+  }
+
+  void capture() {
+    while (!stop_.requested()) {
+      const bool more = capture_.step(clock_.now() + capture_.period() + capture_.period() / 2);
+      heartbeats.beat(capture_beat_, clock_.now());
+      if (!more) return stop_.request();
+    }
+  }
+
+  void vision() {
+    while (!stop_.requested()) {
+      const MonoTime give_up_at = clock_.now() + capture_.period() + capture_.period() / 2;
+      const bool woken = links_.image_came.wait_until(give_up_at);
+      if (stop_.requested()) return;
+      if (woken) {
+        vision_.step();
+      } else {
+        vision_.step_without_image(clock_.now());
+      }
+      heartbeats.beat(vision_beat_, clock_.now());
+    }
+  }
+
+  void motion() {
+    Periodic beat(clock_, kMotionPeriod);
+    while (!stop_.requested()) {
+      beat.wait();
+      motion_.step(clock_.now());
+      heartbeats.beat(motion_beat_, clock_.now());
+    }
+    motion_.step(clock_.now());
+    motion_.end();
+  }
+
+  void switches() {
+    Periodic look(clock_, tasks::kSwitchPeriod);
+    while (!stop_.requested()) {
+      look.wait();
+      if (const auto problem = switches_.step()) spdlog::error("switches: {}", *problem);
+    }
+  }
+
+  void housekeeping() {
+    Periodic round(clock_, kHousekeepingPeriod);
+    while (!stop_.requested()) {
+      round.wait();
+      housekeeping_.step();
+    }
+  }
+
+  Heartbeats heartbeats;
+
+ private:
+  tasks::CaptureTask& capture_;
+  tasks::VisionTask& vision_;
+  tasks::MotionTask& motion_;
+  tasks::SwitchTask& switches_;
+  tasks::HousekeepingTask& housekeeping_;
+  RealClock& clock_;
+  StopRequest& stop_;
+  tasks::Links& links_;
+  std::size_t capture_beat_ = 0;
+  std::size_t vision_beat_ = 0;
+  std::size_t motion_beat_ = 0;
+};
+
+Result<void> start_threads(ThreadTable& threads, LiveLoops& loops, tasks::Links& links) {
+  const auto start = [&threads](const ThreadSpec& spec, auto body, WakeUp* wake = nullptr) {
+    return threads.start(spec, body, wake);
+  };
+  // Consumers before producers: whoever gets work is there to take it.
+  if (auto done = start(runtime::kMotionThread, [&loops] { loops.motion(); }); !done) return done;
+  if (auto done = start(runtime::kHousekeepingThread, [&loops] { loops.housekeeping(); }); !done) return done;
+  if (auto done = start(runtime::kSwitchThread, [&loops] { loops.switches(); }); !done) return done;
+  if (auto done = start(
+          runtime::kVisionThread, [&loops] { loops.vision(); }, &links.image_came);
+      !done)
+    return done;
+  return start(runtime::kCaptureThread, [&loops] { loops.capture(); });
+}
+
+/// Until somebody requests a stop or the end comes. A thread that is silent is named once, and the watchdog is not pinged.
+void supervise_until(MonoTime end, Heartbeats& heartbeats, RealClock& clock, StopRequest& stop) {
+  bool silence_reported = false;
+  while (!stop.wait_until(std::min(end, clock.now() + kSupervisorPeriod))) {
+    if (clock.now() >= end) break;
+    const auto silent = supervise(heartbeats, clock.now());
+    if (!silent.empty() && !silence_reported) {
+      spdlog::critical("thread {} silent for {:.1f} s: the watchdog is not pinged", silent.front().name,
+                       to_seconds(silent.front().lasting));
+    }
+    silence_reported = !silent.empty();
+  }
+}
+
+}  // namespace
+
+Result<void> run_live(RobotState& state, StopRequest& stop) {
+  spdlog::info("memory: {}", lock_memory().text);
+  const Duration period = state.devices.mode.frame_period;
+  RealClock& clock = state.clocks.real;
+  tasks::CaptureTask capture(*state.devices.camera, period, state.links);
+  tasks::VisionTask vision(*state.vision.loop, *state.vision.runner, state.surroundings(), clock, period, state.links);
+  tasks::MotionTask motion(*state.devices.base, stop, Duration::zero(), state.setup.options.arm, state.links);
+  tasks::SwitchTask switches(*state.devices.switches, state.lines(), clock, state.links);
+  tasks::HousekeepingTask housekeeping(state.links, state.outputs.sinks);
+  LiveLoops loops(capture, vision, motion, switches, housekeeping, clock, stop, state.links);
+
+  ThreadTable threads(stop);
+  if (auto started = start_threads(threads, loops, state.links); !started) return started;
+  spdlog::info("threads:\n{}", to_text(threads.report()));
+  service::notify_ready();
+
+  const double duration_s = state.setup.options.duration_s;
+  supervise_until(duration_s > 0.0 ? clock.now() + seconds(duration_s) : MonoTime::max(), loops.heartbeats, clock,
+                  stop);
+  service::notify_stopping();
+  Result<void> outcome = camera_outcome(state);
+  state.devices.camera->stop();
+  threads.stop_and_join();
+  housekeeping.step();
+  return outcome;
+}
+
+}  // namespace cgsr::boot

@@ -1,0 +1,97 @@
+#include "src/sinks/video_sink.h"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace cgsr::sinks {
+namespace {
+
+std::string task_line(const ImageReport& report) {
+  const MotionStatus& motion = report.motion;
+  return fmt::format("{}   commanded {:+.2f} m/s {:+.2f} rad/s   {}", report.frame.decision.value.state,
+                     motion.commanded.forward_mps, motion.commanded.left_radps,
+                     motion.cause == StopCause::kNone ? "free to move" : text(motion.cause));
+}
+
+std::string pose_line(const stages::PoseEstimate& pose) {
+  return fmt::format("pose {}   x {:.2f} y {:.2f} m  heading {:.1f} deg   {} matches", name_of(pose.camera.state),
+                     pose.robot.x_m, pose.robot.y_m, pose.robot.heading_rad * 180.0 / std::numbers::pi,
+                     pose.camera.correction.matches);
+}
+
+std::string lamp_line(const stages::LampReport& lamp, const stages::ShadowMasks& shade) {
+  const auto reason = reason_of(lamp);
+  std::string line = fmt::format("probes: {}   ", reason.empty() ? "shadows visible" : reason);
+  if (lamp.known) {
+    const auto& p = lamp.lamp.p_WL;
+    line += fmt::format("lamp {:.2f} {:.2f} {:.2f} m, sigma {:.3f}   ", p.x(), p.y(), p.z(),
+                        std::sqrt(lamp.lamp.covariance.trace()));
+  }
+  return line + fmt::format("shadow masks: {}", name_of(shade.status));
+}
+
+std::string stage_times(const runtime::FrameRecord& record, const runtime::Schedule& schedule) {
+  std::string line = "stages, us:";
+  for (std::size_t i = 0; i < schedule.rows().size(); ++i) {
+    line +=
+        fmt::format("  {} {:.0f}", schedule.rows()[i].name, static_cast<double>(record.stages[i].elapsed_ns) * 1e-3);
+  }
+  return line;
+}
+
+}  // namespace
+
+std::vector<std::string> overlay_lines(const ImageReport& report, const runtime::Schedule& schedule) {
+  std::vector<std::string> lines{task_line(report)};
+  const stages::FrameResult& frame = report.frame;
+  if (frame.pose.value.has_map) lines.push_back(pose_line(frame.pose.value));
+  if (frame.lamp.value.has_board) lines.push_back(lamp_line(frame.lamp.value, frame.shade.value));
+  lines.push_back(stage_times(report.record, schedule));
+  return lines;
+}
+
+Result<std::unique_ptr<VideoSink>> VideoSink::create(const std::string& path, const hal::CameraMode& mode,
+                                                     const runtime::Schedule& schedule, const GroundTruth* truth,
+                                                     std::unique_ptr<SidePicture> beside) {
+  app::Overlay overlay(mode.width_px, mode.height_px);
+  cv::Size size = overlay.picture_size();
+  if (beside) size.width += beside->picture_size().width;
+  auto video = app::VideoWriter::create(path, size, 1.0 / to_seconds(mode.frame_period));
+  if (!video) return tl::unexpected(video.error());
+  return std::unique_ptr<VideoSink>(
+      new VideoSink(std::move(overlay), std::move(*video), schedule, truth, std::move(beside)));
+}
+
+VideoSink::VideoSink(app::Overlay overlay, app::VideoWriter video, const runtime::Schedule& schedule,
+                     const GroundTruth* truth, std::unique_ptr<SidePicture> beside)
+    : overlay_(std::move(overlay)),
+      video_(std::move(video)),
+      schedule_(schedule),
+      truth_(truth),
+      beside_(std::move(beside)) {}
+
+app::OverlayFacts VideoSink::facts_of(const ImageReport& report) {
+  const color::TrackedObject& object = report.frame.objects.value.first().object;
+  app::OverlayFacts facts;
+  facts.image_number = report.record.image_sequence;
+  if (object.found) facts.box = object.box;
+  facts.light = lights_.add(report.record.stamp, object.found ? std::optional(object.light) : std::nullopt);
+  facts.divergence = object.divergence;
+  facts.shade = report.picture->masks.get();
+  if (truth_ != nullptr) facts.truth = truth_->box;
+  facts.lines = overlay_lines(report, schedule_);
+  return facts;
+}
+
+Result<void> VideoSink::on_image(const ImageReport& report) {
+  if (report.picture == nullptr) return {};
+  const cv::Mat& overlay = overlay_.draw(report.picture->image.view(), facts_of(report));
+  if (!beside_) return video_.add(overlay);
+  cv::hconcat(overlay, beside_->draw(report), side_by_side_);
+  return video_.add(side_by_side_);
+}
+
+}  // namespace cgsr::sinks

@@ -1,0 +1,60 @@
+#include "src/tasks/switch_task.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace cgsr::tasks {
+
+std::optional<std::string> SwitchTask::step() {
+  while (const auto request = links_.switch_requests.pop()) switch_lamp(*request);
+  return watch_arming();
+}
+
+std::optional<std::string> SwitchTask::watch_arming() {
+  if (lines_.arming.empty()) return std::nullopt;
+  const auto level = switches_.read(lines_.arming);
+  if (!level) {
+    const bool news = level_.value_or(true);
+    level_ = false;
+    if (!news) return std::nullopt;
+    static_cast<void>(links_.arm_requests.push(ArmRequest::kDisarm));
+    return level.error().message;
+  }
+  if (level_ && *level_ != *level) {
+    // A request that finds no room is repeated at the next look, for the level is not taken over.
+    if (!links_.arm_requests.push(*level ? ArmRequest::kArm : ArmRequest::kDisarm)) return std::nullopt;
+  }
+  level_ = *level;
+  return std::nullopt;
+}
+
+void SwitchTask::switch_lamp(const stages::SwitchRequest& request) {
+  const auto done = switches_.set(lines_.lamps[static_cast<std::size_t>(request.line)], request.on);
+  sinks::SwitchRecord record;
+  record.answer = {request, done.has_value(), clock_.now()};
+  if (!done) {
+    const std::string& words = done.error().message;
+    std::copy_n(words.begin(), std::min(words.size(), record.problem.size() - 1), record.problem.begin());
+  }
+  // An answer that finds no room is missed by vision in time: the line then counts as silent.
+  static_cast<void>(links_.switch_answers.push(stages::SwitchAnswer(record.answer)));
+  links_.switchings.push(record);
+}
+
+Result<void> check_lines(const hal::Switches& switches, const SwitchLines& lines) {
+  const auto there = switches.names();
+  std::string problems;
+  const auto check = [&](const std::string& name) {
+    if (name.empty() || std::find(there.begin(), there.end(), name) != there.end()) return;
+    problems += fmt::format("switches: there is no line '{}'; there are: {}\n", name, fmt::join(there, ", "));
+  };
+  check(lines.arming);
+  for (const std::string& name : lines.lamps) check(name);
+  if (problems.empty()) return {};
+  problems.pop_back();
+  return fail(std::move(problems));
+}
+
+}  // namespace cgsr::tasks

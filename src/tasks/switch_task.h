@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "hal/switches.h"
+#include "platform/clock.h"
+#include "platform/time.h"
+#include "src/tasks/links.h"
+
+namespace cgsr::tasks {
+
+/// How often the switch worker looks at the lines.
+inline constexpr Duration kSwitchPeriod = seconds(0.050);
+
+/// The lines that the worker knows, by name; empty: there is none.
+struct SwitchLines {
+  std::string arming;
+  std::array<std::string, stages::kLampLines> lamps;  ///< by LampLine.
+};
+
+/// Watches the arming line, whose edges are requests to arm and disarm, and switches lamps as vision asks, acknowledging each with the time at which it
+/// was done. Not real-time: a line may block for milliseconds.
+class SwitchTask {
+ public:
+  SwitchTask(hal::Switches& switches, SwitchLines lines, const Clock& clock, Links& links)
+      : switches_(switches), lines_(std::move(lines)), clock_(clock), links_(links) {}
+
+  /// \return what is wrong with the arming line, when it does not answer; the robot is disarmed then.
+  std::optional<std::string> step();
+
+ private:
+  std::optional<std::string> watch_arming();
+  void switch_lamp(const stages::SwitchRequest& request);
+
+  hal::Switches& switches_;
+  SwitchLines lines_;
+  const Clock& clock_;
+  Links& links_;
+  std::optional<bool> level_;  // nothing yet: a switch that is on at boot does not arm, its edge does
+};
+
+/// \return an error that names each configured line that does not exist, beside those that do.
+Result<void> check_lines(const hal::Switches& switches, const SwitchLines& lines);
+
+}  // namespace cgsr::tasks

@@ -1,0 +1,159 @@
+// Every reader of a stage's output states how old is too old: the producer is skipped, faults or lags, and the reader does without.
+#include <gtest/gtest.h>
+
+#include "pipeline/stages/color_stages.h"
+#include "pipeline/stages/tasks.h"
+#include "pipeline/world/load.h"
+#include "src/config/color.h"
+#include "tests/tasks/painted_camera.h"
+
+namespace cgsr::stages {
+namespace {
+
+using tasks::testing::PaintedCamera;
+
+template <class Output>
+runtime::Aged<Output> aged(Output output, Duration age) {
+  return {std::move(output), {}, age};
+}
+
+constexpr Duration kFrame = seconds(1.0 / 30.0);
+constexpr Duration kNow = Duration::zero();
+
+PoseEstimate known_pose() {
+  PoseEstimate pose;
+  pose.has_map = true;
+  pose.robot = {true, 4.6, 3.2, 0.0};
+  pose.camera.covariance = 1e-5 * geometry::Matrix6d::Identity();
+  return pose;
+}
+
+LampReport known_lamp() {
+  LampReport report;
+  report.has_board = true;
+  report.known = true;
+  report.observation = illumination::ObservationStatus::kSeen;
+  report.lamp.p_WL = {4.0, 3.0, 2.0};
+  report.lamp.covariance = 1e-4 * Eigen::Matrix3d::Identity();
+  return report;
+}
+
+class ColorEdges : public ::testing::Test {
+ protected:
+  ColorEdges()
+      : stages_(*ColorStages::make(camera_.learn(), config::Color{}.track, PaintedCamera::kWidth_px,
+                                   PaintedCamera::kHeight_px)),
+        image_(camera_.image(0, false)),
+        view_(stages_.decode->update(image_.view())) {}
+
+  PaintedCamera camera_;
+  ColorStages stages_;
+  ImageLease image_;
+  View view_;
+  UnlimitedBudget budget_;
+};
+
+TEST_F(ColorEdges, SearchAndTrackReadTheLabelsOfThisImageAlone) {
+  EXPECT_GT(stages_.search->update(budget_, aged(view_, kNow), {}).count, 0);
+  EXPECT_EQ(stages_.search->update(budget_, aged(view_, kFrame), {}).count, 0);
+  EXPECT_EQ(stages_.search->update(budget_, {}, {}).count, 0) << "decode never ran";
+
+  const auto matches = aged(stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
+  EXPECT_FALSE(
+      stages_.track->update(budget_, image_.view(), aged(view_, kFrame), matches, {}, {}).first().object.found);
+  EXPECT_TRUE(stages_.track->update(budget_, image_.view(), aged(view_, kNow), matches, {}, {}).first().object.found);
+}
+
+TEST_F(ColorEdges, TrackDoesWithoutWindowsThatAreTooOld) {
+  const auto windows = stages_.search->update(budget_, aged(view_, kNow), {});
+  const auto old = aged(windows, TrackStage::kMaxMatchesAge + kFrame);
+  EXPECT_FALSE(stages_.track->update(budget_, image_.view(), aged(view_, kNow), old, {}, {}).first().object.found);
+  const auto young = aged(windows, TrackStage::kMaxMatchesAge);
+  EXPECT_TRUE(stages_.track->update(budget_, image_.view(), aged(view_, kNow), young, {}, {}).first().object.found);
+}
+
+TEST_F(ColorEdges, TrackLooksForNothingWhenTheLastDecisionSaysSo) {
+  const auto matches = aged(stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
+  const Requests none{.track = false, .check = {}, .lamps = {}};
+  EXPECT_FALSE(
+      stages_.track->update(budget_, image_.view(), aged(view_, kNow), matches, {}, none).first().object.found);
+}
+
+class ShadeEdges : public ::testing::Test {
+ protected:
+  ShadeEdges()
+      : map_(std::make_shared<const world::Map>(*world::load_map(CGSR_SOURCE_DIR "/config/maps/home/map.obj"))),
+        stage_(map_, camera(), {}) {}
+
+  static geometry::Camera camera() {
+    geometry::Camera camera;
+    camera.width_px = 640;
+    camera.height_px = 480;
+    camera.fx_px = camera.fy_px = 600.0;
+    camera.cx_px = 319.5;
+    camera.cy_px = 239.5;
+    return camera;
+  }
+
+  std::shared_ptr<const world::Map> map_;
+  ShadeStage stage_;
+};
+
+TEST_F(ShadeEdges, MasksNeedThePoseOfThisImage) {
+  const auto lamp = aged(known_lamp(), kNow);
+  EXPECT_EQ(stage_.update(aged(known_pose(), kFrame), lamp).status, ShadeStatus::kPoseUnknown);
+  EXPECT_EQ(stage_.update({}, lamp).status, ShadeStatus::kPoseUnknown);
+  EXPECT_EQ(stage_.update(aged(known_pose(), kNow), lamp).status, ShadeStatus::kMasked);
+}
+
+TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
+  const auto pose = aged(known_pose(), kNow);
+  EXPECT_EQ(stage_.update(pose, aged(known_lamp(), ShadeStage::kMaxLampAge)).status, ShadeStatus::kMasked);
+  EXPECT_EQ(stage_.update(pose, aged(known_lamp(), ShadeStage::kMaxLampAge + kFrame)).status, ShadeStatus::kNoLamp);
+  EXPECT_EQ(stage_.update(pose, {}).status, ShadeStatus::kNoLamp);
+}
+
+TEST_F(ShadeEdges, WithoutARoomForNewMasksItSaysSo) {
+  std::vector<ShadowMasks> held;
+  for (int i = 0; i < 20; ++i) {
+    held.push_back(stage_.update(aged(known_pose(), kNow), aged(known_lamp(), kNow)));
+    if (held.back().status == ShadeStatus::kNoRoom) break;
+  }
+  EXPECT_EQ(held.back().status, ShadeStatus::kNoRoom);
+  held.clear();
+  EXPECT_EQ(stage_.update(aged(known_pose(), kNow), aged(known_lamp(), kNow)).status, ShadeStatus::kMasked);
+}
+
+TEST(RouteEdges, ARobotStopsWhenItsPoseIsTooOld) {
+  RouteTask task(behavior::Route({}, {{9.0, 3.2}}));
+  FrameResult frame;
+  const ImageView image;
+  frame.pose = aged(known_pose(), kMaxPoseAge);
+  Decision decision;
+  for (int i = 0; i < 30; ++i) decision = task.decide(frame, image, kFrame);
+  EXPECT_GT(decision.goal.forward_mps, 0.0);
+  frame.pose.age = kMaxPoseAge + kFrame;
+  decision = task.decide(frame, image, kFrame);
+  EXPECT_TRUE(decision.halt);
+  EXPECT_EQ(decision.goal.forward_mps, 0.0);
+}
+
+TEST(FollowEdges, ARobotStopsForAnObjectThatWasSeenTooLongAgo) {
+  geometry::Camera optics;
+  optics.fx_px = 600.0;
+  optics.cx_px = 320.0;
+  FollowTask task(behavior::Follow({}, behavior::LearnedSize{60.0, 60.0}), optics);
+  FrameResult frame;
+  frame.objects.value.count = 1;
+  frame.objects.value.tracks.front().object = {true, {300.0, 200.0, 40.0, 40.0}, 0.1, {}, {}};
+  frame.objects.age = kNow;
+  ImageView image;
+  image.width_px = 640;
+  image.height_px = 480;
+  EXPECT_FALSE(task.decide(frame, image, kFrame).halt);
+  frame.objects.age = seconds(2.0);
+  EXPECT_TRUE(task.decide(frame, image, kFrame).halt);
+}
+
+}  // namespace
+}  // namespace cgsr::stages

@@ -1,0 +1,104 @@
+// What the tasks around the loops do with what devices and rings give them.
+#include "hal/dummy/dummy_switches.h"
+
+#include <gtest/gtest.h>
+
+#include "src/tasks/capture_task.h"
+#include "src/tasks/switch_task.h"
+#include "tests/tasks/painted_camera.h"
+
+namespace cgsr::tasks::testing {
+namespace {
+
+/// A camera that fails in whatever way the test says.
+class MoodyCamera final : public hal::Camera {
+ public:
+  Result<hal::CameraMode> start() override { return hal::CameraMode{}; }
+  tl::expected<ImageLease, hal::CaptureFailure> next_image(MonoTime) override {
+    if (failure) return tl::unexpected(*failure);
+    return painted.image(number++);
+  }
+  void stop() override {}
+  [[nodiscard]] std::string last_problem() const override { return "moody"; }
+
+  PaintedCamera painted;
+  std::optional<hal::CaptureFailure> failure;
+  std::uint64_t number = 0;
+};
+
+TEST(CaptureTask, CountsEveryWayToFailAndGoesOnWhereItCan) {
+  MoodyCamera camera;
+  Links links;
+  CaptureTask capture(camera, PaintedCamera::kPeriod, links);
+  for (const auto failure :
+       {hal::CaptureFailure::kTimeout, hal::CaptureFailure::kNoSlot, hal::CaptureFailure::kCorrupt}) {
+    camera.failure = failure;
+    EXPECT_TRUE(capture.step({}));
+  }
+  EXPECT_EQ(links.capture.timeouts, 1u);
+  EXPECT_EQ(links.capture.no_slot, 1u);
+  EXPECT_EQ(links.capture.corrupt, 1u);
+  EXPECT_EQ(links.capture.images, 0u);
+}
+
+TEST(CaptureTask, TellsTheEndOfARecordingFromALostCamera) {
+  for (const bool lost : {false, true}) {
+    MoodyCamera camera;
+    Links links;
+    CaptureTask capture(camera, PaintedCamera::kPeriod, links);
+    camera.failure = lost ? hal::CaptureFailure::kDisconnected : hal::CaptureFailure::kEndOfStream;
+    EXPECT_FALSE(capture.step({}));
+    EXPECT_EQ(links.camera_lost, lost);
+    EXPECT_EQ(links.images_ended, !lost);
+    EXPECT_TRUE(links.image_came.wait_until(MonoTime{})) << "vision is told at once";
+  }
+}
+
+TEST(CaptureTask, AFullRingNeverBlocksAndIsCounted) {
+  MoodyCamera camera;
+  Links links;
+  CaptureTask capture(camera, PaintedCamera::kPeriod, links);
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(capture.step({}));
+  EXPECT_EQ(links.images.statistics().dropped, 6u);
+  EXPECT_EQ(links.images.statistics().high_water, 4u);
+}
+
+class SwitchTaskOf : public ::testing::Test {
+ protected:
+  SwitchTaskOf() { EXPECT_TRUE(switches_.start()); }
+  std::optional<ArmRequest> after_step() {
+    problem_ = task_.step();
+    return links_.arm_requests.pop();
+  }
+  hal::DummySwitches switches_{{{"arm", hal::LineDirection::kInput, true}}};
+  Links links_;
+  SimulatedClock clock_;
+  SwitchTask task_{switches_, {"arm", {}}, clock_, links_};
+  std::optional<std::string> problem_;
+};
+
+TEST_F(SwitchTaskOf, ASwitchThatIsOnAtBootDoesNotArm) {
+  EXPECT_EQ(after_step(), std::nullopt);
+  EXPECT_EQ(after_step(), std::nullopt);
+}
+
+TEST_F(SwitchTaskOf, EdgesArmAndDisarm) {
+  after_step();
+  switches_.press("arm", false);
+  EXPECT_EQ(after_step(), ArmRequest::kDisarm);
+  switches_.press("arm", true);
+  EXPECT_EQ(after_step(), ArmRequest::kArm);
+  EXPECT_EQ(after_step(), std::nullopt);
+}
+
+TEST_F(SwitchTaskOf, ALineThatDoesNotAnswerDisarmsOnceAndIsNamed) {
+  after_step();
+  switches_.stop();
+  EXPECT_EQ(after_step(), ArmRequest::kDisarm);
+  ASSERT_TRUE(problem_);
+  EXPECT_NE(problem_->find("arm"), std::string::npos) << *problem_;
+  EXPECT_EQ(after_step(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace cgsr::tasks::testing
