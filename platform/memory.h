@@ -10,10 +10,22 @@ struct MemoryReport {
   std::string text;  ///< one line: what took effect, or what was refused and what would grant it
 };
 
-/// Locks what is mapped now and whatever will be (mlockall), so that no page of the process is ever read from disk
-/// again. Call it at boot, before the threads are created. Under a finite RLIMIT_MEMLOCK without CAP_IPC_LOCK it
+/// Locks the process's memory, so that what the robot's threads use is never read from disk again:
+/// - the heap, the program, and the libraries that work on the frame path: read now, and kept;
+/// - whatever is mapped later (threads' stacks, a growing heap): likewise, whole;
+/// - the other libraries' files (video decoders, geographic formats and the like, 200 MB behind OpenCV's modules): what of them was
+///   used is kept, what never is takes no memory.
+///
+/// Call it at boot, when all libraries are loaded and before the threads are created. Under a finite RLIMIT_MEMLOCK without CAP_IPC_LOCK it
 /// refuses: such a lock succeeds and then makes a later thread or allocation fail.
 MemoryReport lock_memory();
+
+/// What the kernel counts of this process now, in bytes (VmRSS and VmLck of /proc/self/status); 0 where it does not say.
+struct MemoryInUse {
+  std::size_t resident = 0;
+  std::size_t locked = 0;
+};
+MemoryInUse memory_in_use();
 
 /// Tells malloc to keep what it ever got: no page returns to the kernel (M_TRIM_THRESHOLD), no block is mapped by
 /// itself and unmapped when freed (M_MMAP_MAX). After a warm-up cycle, library calls that must allocate then do so

@@ -33,6 +33,7 @@ class RunningCgsr {
   void send(int signal) const;
   Outcome wait();
   [[nodiscard]] bool ended();
+  [[nodiscard]] pid_t process() const { return process_; }
 
  private:
   std::filesystem::path folder_;

@@ -87,6 +87,28 @@ TEST_F(RunReplay, LiveRunsEndAfterTheirDurationWithZeroAsTheLastCommand) {
   for (const auto& [name, stage] : run["stages"].items()) EXPECT_GT(stage["worst_us"], 0.0) << name;
 }
 
+// A follower by colour, with memory locked or not: its own and what it uses of the libraries, not all that stands behind them.
+TEST_F(RunReplay, ALiveFollowerTakesAtMost120MegabytesAndNoOpenGl) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "SKIPPED: a sanitizer brings its own memory";
+#endif
+  const auto csv = scratch_ / "run.csv";
+  RunningCgsr running(arguments(live_config(), {"--csv", csv}));
+  while (read_text(csv).size() < 2000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const std::string proc = "/proc/" + std::to_string(running.process());
+  const auto status = read_text(proc + "/status");
+  const auto maps = read_text(proc + "/maps");
+  running.send(SIGTERM);
+  EXPECT_EQ(running.wait().exit_code, 0);
+  const auto at = status.find("VmRSS:");
+  ASSERT_NE(at, std::string::npos);
+  const long resident_kib = std::stol(status.substr(at + 6));
+  EXPECT_GT(resident_kib, 10'000);
+  EXPECT_LE(resident_kib, 120'000) << status;
+  EXPECT_EQ(maps.find("OSMesa"), std::string::npos);
+  EXPECT_EQ(maps.find("cgsr-opengl"), std::string::npos);
+}
+
 TEST_F(RunReplay, ALostCameraIsAFailure) {
   auto text = read_text(shipped_);
   text.replace(text.find("loop = false"), 12, "loop = true");
