@@ -29,7 +29,7 @@ run_tests() {
       retry "$preset" "$scratch" "$names"
     fi
   fi
-  left="$(find "$scratch" -mindepth 2 -printf '%P\n'; comm -13 <(echo "$before") <(untracked))"
+  left="$(cd "$scratch" && { find tmp -mindepth 1; find cache -type f; }; comm -13 <(echo "$before") <(untracked))"
   rm -rf "$scratch"
   if [ -n "$left" ]; then
     printf 'left behind by a test of build/%s: %s\n' "$preset" "$left" >&2
@@ -37,12 +37,13 @@ run_tests() {
   fi
 }
 
-# Runs a command whose temporary files and cache lie in folders of their own.
+# Runs a command whose temporary files and cache lie in folders of their own. Mesa's cache of shaders is not the tests' to fill.
 quarantined() {
   local scratch="$1"
   shift
   mkdir -p "$scratch/tmp" "$scratch/cache"
-  TMPDIR="$scratch/tmp" TEST_TMPDIR="$scratch/tmp/" XDG_CACHE_HOME="$scratch/cache" PYTHONDONTWRITEBYTECODE=1 "$@"
+  TMPDIR="$scratch/tmp" TEST_TMPDIR="$scratch/tmp/" XDG_CACHE_HOME="$scratch/cache" MESA_SHADER_CACHE_DISABLE=true \
+    PYTHONDONTWRITEBYTECODE=1 "$@"
 }
 
 # Files that are not git's, except what the build makes.
