@@ -29,7 +29,7 @@ run_tests() {
       retry "$preset" "$scratch" "$names"
     fi
   fi
-  left="$(cd "$scratch" && { find tmp -mindepth 1; find cache -type f; }; comm -13 <(echo "$before") <(untracked))"
+  left="$( (cd "$scratch" && find tmp -mindepth 1 && find cache -type f); comm -13 <(echo "$before") <(untracked))"
   rm -rf "$scratch"
   if [ -n "$left" ]; then
     printf 'left behind by a test of build/%s: %s\n' "$preset" "$left" >&2
