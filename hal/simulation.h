@@ -33,14 +33,20 @@ struct SimulationParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.text("scenario", self.scenario, "what happens in which world: a file of config/scenarios");
-    visit.text("plug_in", self.plug_in, "the simulator's shared library; empty: cgsr-simulation.so beside the program");
-    visit.number("seed", self.seed, {0, 1000000000}, "", "of noise, slip and small changes of the actors' ways");
-    visit.number("threads", self.threads, {1, 64}, "", "that render; the images do not depend on it");
-    visit.number("width_px", self.width_px, {16, 4096}, "px", "of the camera's images, even");
-    visit.number("height_px", self.height_px, {16, 4096}, "px", "of the camera's images");
-    visit.flag("cache", self.cache,
-               "keeps rendered images in the user's cache folder: a repeated run does not draw them again");
+    visit.path("scenario", self.scenario,
+               "The scenario file, which names the world and what happens in it (config/scenarios).");
+    visit.path("plug_in", self.plug_in,
+               "The simulator's shared library; when empty, cgsr-simulation.so beside the program is loaded.");
+    visit.number("seed", self.seed, {0, 1000000000}, "",
+                 "The seed of the random numbers for noise, wheel slip and small deviations of the actors' paths.");
+    visit.number("threads", self.threads, {1, 64}, "",
+                 "The number of threads that render images; the images do not depend on it.");
+    visit.number("width_px", self.width_px, {16, 4096}, "px",
+                 "The width of the simulated camera's images, which must be even.");
+    visit.number("height_px", self.height_px, {16, 4096}, "px", "The height of the simulated camera's images.");
+    visit.flag(
+        "cache", self.cache,
+        "Rendered images are kept in the user's cache folder, so that a repeated run does not render them again.");
   }
 };
 

@@ -14,16 +14,17 @@ namespace cgsr {
 ///
 ///       template <class Self, class Visitor>
 ///       static void describe(Self& self, Visitor& visit) {
-///         visit.number("distance_m", self.distance_m, {0.3, 5.0}, "m", "distance to keep from the object");
-///         visit.choice("mode", self.mode, kModeNames, "which search answers");
+///         visit.number("distance_m", self.distance_m, {0.3, 5.0}, "m", "The distance that the robot keeps from the object.");
+///         visit.choice("mode", self.mode, kModeNames, "The search that answers.");
 ///       }
 ///     };
 ///
 /// The TOML reader, docs/config.md and the configuration's hash are visitors; none of them repeats a name, a range or a default.
-/// A visitor has these members:
+/// A meaning is a full sentence, that of a section a phrase without a full stop. Bounds are called min_ and max_. A visitor has these members:
 ///   number(name, value&, Range{minimum, maximum}, unit, meaning)   int or double; the range is closed
 ///   flag(name, value&, meaning)                                    bool
 ///   text(name, value&, meaning)                                    std::string
+///   path(name, value&, meaning)                                    std::string: a file, relative to the configuration file that names it
 ///   choice(name, value&, table of Named{name, value}, meaning)     any enum
 ///   section(name, struct&, meaning)                                another parameter struct
 template <class T>

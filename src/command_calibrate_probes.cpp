@@ -124,7 +124,9 @@ void add_calibrate_probes(CLI::App& calibrate, int& exit_code) {
       "probes", "board, probes and the camera against them, from images with a lamp at a known place");
   probes->add_option("--input", options->input, "images of the probes: video or image folder")->required();
   probes->add_option("--camera", options->camera, "intrinsics (YAML)")->required();
-  probes->add_option("--config", options->config, "what was measured by hand: as config/illumination/lamp-robot.toml")
+  probes
+      ->add_option("--config", options->config,
+                   "what was measured by hand: a file as config/illumination/lamp-robot.toml, or a robot's file")
       ->required();
   probes->add_option("--mount", options->mount, "robot.toml with [mount], instead of the configuration's");
   probes->add_option("--poses", options->poses, "poses of the robot in the world, CSV, a row per image")->required();

@@ -6,12 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "platform/config/canonical.h"
-#include "platform/config/template.h"
 #include "src/boot/robot.h"
 #include "src/command.h"
 #include "src/config/load.h"
-#include "src/config/robot_docs.h"
-#include "src/output/text_file.h"
 
 namespace cgsr::app {
 namespace {
@@ -20,8 +17,6 @@ struct Options {
   std::string config = "config/robots/video.toml";
   std::string input;
   std::string model;
-  std::string write_docs;
-  std::string write_config;
 };
 
 /// What was found, for people.
@@ -35,15 +30,6 @@ void print_findings(const boot::RobotState& state) {
 }
 
 int run_check(const Options& options) {
-  if (!options.write_docs.empty()) {
-    if (auto written = write_file(options.write_docs, config::robot_docs()); !written) return report(written.error());
-    return kSuccess;
-  }
-  if (!options.write_config.empty()) {
-    const std::string text = config::to_template(config::Robot{});
-    if (auto written = write_file(options.write_config, text); !written) return report(written.error());
-    return kSuccess;
-  }
   auto robot = config::load_robot(options.config);
   if (!robot) return report(robot.error());
   if (!options.input.empty()) robot->camera.replay.path = options.input;
@@ -65,9 +51,6 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_option("--config", options->config, "the robot's file")->capture_default_str();
   command->add_option("--input", options->input, "images instead of those that the file names");
   command->add_option("--model", options->model, "object instead of the one that the file names");
-  command->add_option("--write-docs", options->write_docs, "write the page of all keys (docs/config.md) and end");
-  command->add_option("--write-config", options->write_config,
-                      "write a robot's file with every key and its default, and end");
   command->callback([options, &exit_code] { exit_code = run_check(*options); });
 }
 

@@ -84,7 +84,7 @@ void add_learn_command(CLI::App& app, int& exit_code) {
       ->check(CLI::NonNegativeNumber);
   command->add_option("--output", options->output, "model file to write")->required();
   command->add_option("--preview", options->preview, "picture of what was learned; default: OUTPUT.png");
-  command->add_option("--config", options->config, "a robot's file, for its section [color]");
+  command->add_option("--config", options->config, "a robot's file, or one with just the section [color]");
   command->callback([options, &exit_code] { exit_code = run_learn(*options); });
 }
 

@@ -41,7 +41,8 @@ void add_light_command(CLI::App& app, int& exit_code) {
   auto* command =
       app.add_subcommand("light", "locate lamps by the shadows of the robot's probes (Alg. 5.1, Eq. 5.1, 5.2)");
   command
-      ->add_option("--config", options->config, "board, probes and lamp: a file as config/illumination/lamp-robot.toml")
+      ->add_option("--config", options->config,
+                   "board, probes and lamp: a file as config/illumination/lamp-robot.toml, or a robot's file")
       ->required();
   command->add_option("--camera", options->camera, "YAML of ROS's camera_calibration")->required();
   command->add_option(

@@ -68,7 +68,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--method", options->method, "instead of the configuration's")
       ->check(CLI::IsMember({"glcorrect", "stronger", "paper"}));
   command->add_option("--config", options->config,
-                      "a file as config/localization/floor.toml; without it six free numbers");
+                      "a file as config/localization/floor.toml, or a robot's file; without it six free numbers");
   command
       ->add_option(
           "--units", options->units,

@@ -109,7 +109,7 @@ void add_track_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", options->csv, "write a row per image");
   command->add_option("--video", options->video, "write a video with box, lights and divergence");
   command->add_option("--json", options->json, "write the summary for machines");
-  command->add_option("--config", options->config, "a robot's file, for its section [color]");
+  command->add_option("--config", options->config, "a robot's file, or one with just the section [color]");
   command
       ->add_option("--mode", options->mode,
                    "plain: the dissertation's Alg. 3.2; full: ours; default: the configuration's")

@@ -20,6 +20,7 @@ int run_command_line(int argc, char** argv) {
   int exit_code = kSuccess;
   add_run_command(app, exit_code);
   add_check_command(app, exit_code);
+  add_config_command(app, exit_code);
   add_calibrate_command(app, exit_code);
   add_learn_command(app, exit_code);
   add_track_command(app, exit_code);

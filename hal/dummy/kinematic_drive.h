@@ -18,13 +18,16 @@ struct KinematicDriveParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 10.0}, "m/s", "faster commands are cut to this");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 20.0}, "rad/s", "faster turns are cut to this");
+    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 10.0}, "m/s",
+                 "The largest forward speed; faster commands are clipped to it.");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 20.0}, "rad/s",
+                 "The largest turn rate; faster commands are clipped to it.");
     visit.number("forward_acceleration_mps2", self.forward_acceleration_mps2, {0.01, 100.0}, "m/s^2",
-                 "how fast the speed follows a command");
+                 "The acceleration with which the speed follows a command.");
     visit.number("turn_acceleration_radps2", self.turn_acceleration_radps2, {0.01, 1000.0}, "rad/s^2",
-                 "how fast the turn follows a command");
-    visit.number("command_timeout_s", self.command_timeout_s, {0.01, 10.0}, "s", "without commands it slows to zero");
+                 "The angular acceleration with which the turn rate follows a command.");
+    visit.number("command_timeout_s", self.command_timeout_s, {0.01, 10.0}, "s",
+                 "The base slows down to zero when it has received no command for this time.");
   }
 };
 

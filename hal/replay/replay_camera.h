@@ -34,15 +34,24 @@ struct ReplayParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.text("path", self.path, "video file, image file, or folder of images read in the order of their names");
-    visit.choice("pace", self.pace, kReplayPaceNames, "whether images wait for their time");
-    visit.number("width_px", self.width_px, {0, kLongestSide_px}, "px", "scale to this even width; 0: as stored");
-    visit.number("height_px", self.height_px, {0, kLongestSide_px}, "px", "scale to this height; 0: as stored");
-    visit.number("rate_hz", self.rate_hz, {0.0, 500.0}, "Hz", "images a second; 0: the video's own, 30 for images");
-    visit.number("first", self.first, {0, 1'000'000'000}, "1", "image to begin with; 0 is the first");
-    visit.number("count", self.count, {0, 1'000'000'000}, "1", "images to replay; 0: to the end");
-    visit.flag("loop", self.loop, "begin again at the end");
-    visit.number("slots", self.slots, {1, SlotPool::kMostSlots}, "1", "images that can be on lease at once");
+    visit.path("path", self.path,
+               "The video file, image file or folder of images to replay; a folder is read in the order of its names.");
+    visit.choice("pace", self.pace, kReplayPaceNames,
+                 "With own_rate an image is delivered when its time has come; with as_fast_as_possible it is delivered "
+                 "at once.");
+    visit.number("width_px", self.width_px, {0, kLongestSide_px}, "px",
+                 "Images are scaled to this even width; 0 keeps the stored width.");
+    visit.number("height_px", self.height_px, {0, kLongestSide_px}, "px",
+                 "Images are scaled to this height; 0 keeps the stored height.");
+    visit.number("rate_hz", self.rate_hz, {0.0, 500.0}, "Hz",
+                 "The number of images per second; 0 takes the video's own rate, and 30 Hz for image files.");
+    visit.number("first", self.first, {0, 1'000'000'000}, "1",
+                 "The index of the first image to replay, counted from 0.");
+    visit.number("count", self.count, {0, 1'000'000'000}, "1",
+                 "The number of images to replay; 0 replays all of them.");
+    visit.flag("loop", self.loop, "The replay starts again from the first image when it has reached the last one.");
+    visit.number("slots", self.slots, {1, SlotPool::kMostSlots}, "1",
+                 "The number of images that can be on lease at the same time.");
   }
 };
 

@@ -29,21 +29,25 @@ struct RmpParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("mode_at_start", self.mode_at_start, kModeAtStartNames,
-                 "what the base is asked for at the start; keep: a person has chosen on the base itself");
+                 "The operating mode that the driver requests from the base at the start; keep leaves the mode that "
+                 "was chosen on the base.");
     visit.number("hold_s", self.hold_s, {0.02, 0.3}, "s",
-                 "how long a command holds without another; then zero is sent");
+                 "A velocity command is repeated for this time when no newer one arrives; after that, zero is sent.");
     visit.number("feedback_warn_s", self.feedback_warn_s, {0.015, 0.1}, "s",
-                 "age of a needed message that is counted as late, and the longest way between two sets in a row");
+                 "A required message older than this is counted as late; two complete sets further apart than this are "
+                 "not consecutive.");
     visit.number("feedback_timeout_s", self.feedback_timeout_s, {0.02, 0.3}, "s",
-                 "age of a needed message past which the robot is stopped");
+                 "The robot is stopped when a required message is older than this.");
     visit.number("min_ready_sets", self.min_ready_sets, {1, 1000}, "sets",
-                 "whole sets in a row, 10 ms each, before the base counts as ready, at the start and after a fault");
+                 "The number of consecutive complete message sets, 10 ms each, after which the base is ready at the "
+                 "start and after a fault.");
     visit.number("max_refusals", self.max_refusals, {1, 100}, "commands",
-                 "commands in a row that a full queue refuses before the link counts as lost");
+                 "The link is lost when a full queue has refused this many commands in a row.");
     visit.number("max_plausible_mps", self.max_plausible_mps, {1.0, 20.0}, "m/s",
-                 "a wheel reported as faster is a damaged message");
-    visit.number("max_plausible_radps", self.max_plausible_radps, {1.0, 50.0}, "rad/s", "likewise a turn");
-    visit.section("scales", self.scales, "Counts per unit on the base's bus");
+                 "A message that reports a faster wheel is treated as damaged.");
+    visit.number("max_plausible_radps", self.max_plausible_radps, {1.0, 50.0}, "rad/s",
+                 "A message that reports a faster turn is treated as damaged.");
+    visit.section("scales", self.scales, "The counts per physical unit on the bus of the base");
   }
 };
 

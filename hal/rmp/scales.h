@@ -33,24 +33,30 @@ struct RmpScales {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("velocity_command_per_mps", self.velocity_command_per_mps, {100.0, 1000.0}, "1/(m/s)",
-                 "counts of a velocity command; some drivers use 328.85");
-    visit.number("turn_command_per_degps", self.turn_command_per_degps, {1.0, 50.0}, "1/(deg/s)",
-                 "counts of a turn command; depends on the firmware: calibrate it");
-    visit.number("velocity_per_mps", self.velocity_per_mps, {100.0, 1000.0}, "1/(m/s)", "counts of a wheel's velocity");
+                 "The counts of a velocity command per m/s; some drivers use 328.85.");
+    visit.number(
+        "turn_command_per_degps", self.turn_command_per_degps, {1.0, 50.0}, "1/(deg/s)",
+        "The counts of a turn command per degree per second; this depends on the firmware and has to be calibrated.");
+    visit.number("velocity_per_mps", self.velocity_per_mps, {100.0, 1000.0}, "1/(m/s)",
+                 "The counts of a reported wheel velocity per m/s.");
     visit.number("displacement_per_m", self.displacement_per_m, {1000.0, 100000.0}, "1/m",
-                 "counts of the way travelled");
-    visit.number("yaw_per_rev", self.yaw_per_rev, {10000.0, 1000000.0}, "1/rev", "counts of a full turn, integrated");
-    visit.number("angle_per_deg", self.angle_per_deg, {1.0, 100.0}, "1/deg", "counts of pitch");
-    visit.number("rate_per_degps", self.rate_per_degps, {1.0, 100.0}, "1/(deg/s)", "counts of the yaw rate");
+                 "The counts of the reported displacement per metre.");
+    visit.number("yaw_per_rev", self.yaw_per_rev, {10000.0, 1000000.0}, "1/rev",
+                 "The counts of the integrated yaw per full revolution.");
+    visit.number("angle_per_deg", self.angle_per_deg, {1.0, 100.0}, "1/deg",
+                 "The counts of the pitch angle per degree.");
+    visit.number("rate_per_degps", self.rate_per_degps, {1.0, 100.0}, "1/(deg/s)",
+                 "The counts of the yaw rate per degree per second.");
     visit.choice("yaw_rate_sign", self.yaw_rate_sign, kSignNames,
-                 "negated when the base counts a clockwise yaw rate as positive: look at it on the robot");
-    visit.choice("pitch_sign", self.pitch_sign, kSignNames, "as_reported when leaning forward counts as positive");
+                 "Choose negated when the base reports a clockwise yaw rate as positive; observe it on the robot.");
+    visit.choice("pitch_sign", self.pitch_sign, kSignNames,
+                 "Choose as_reported when the base reports leaning forward as positive.");
     visit.number("base_battery_per_v", self.base_battery_per_v, {0.1, 100.0}, "1/V",
-                 "counts of the power base's battery");
+                 "The counts of the power base's battery per volt.");
     visit.number("ui_battery_offset_v", self.ui_battery_offset_v, {0.0, 10.0}, "V",
-                 "user interface's battery at count zero");
+                 "The voltage of the user interface's battery at count zero.");
     visit.number("ui_battery_v_per_count", self.ui_battery_v_per_count, {0.0001, 1.0}, "V/count",
-                 "its volts for each count");
+                 "The voltage of the user interface's battery per count.");
   }
 };
 

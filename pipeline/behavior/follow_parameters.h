@@ -26,32 +26,39 @@ struct FollowParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("distance_m", self.distance_m, {0.3, 5.0}, "m", "distance to keep from the object");
-    visit.number(
-        "learned_distance_m", self.learned_distance_m, {0.0, 10.0}, "m",
-        "how far the object was when its size was learned; 0: not known, the first box seen counts as distance_m");
+    visit.number("distance_m", self.distance_m, {0.3, 5.0}, "m", "The distance that the robot keeps from the object.");
+    visit.number("learned_distance_m", self.learned_distance_m, {0.0, 10.0}, "m",
+                 "The distance at which the object's size was learned; 0 means unknown, and the first detected box "
+                 "then counts as distance_m.");
     visit.number("distance_band_m", self.distance_band_m, {0.0, 1.0}, "m",
-                 "an error of the distance this small is none");
-    visit.number("approach_per_s", self.approach_per_s, {0.0, 3.0}, "1/s", "speed for each metre of error");
-    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "fastest approach");
-    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
-                 "fastest retreat from an object that comes too near; the robot is blind backwards");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest gain of speed");
-    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²", "steepest loss of speed");
+                 "A distance error within this band is treated as zero.");
+    visit.number("approach_per_s", self.approach_per_s, {0.0, 3.0}, "1/s",
+                 "The forward speed per metre of distance error.");
+    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "The largest speed towards the object.");
+    visit.number(
+        "max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
+        "The largest speed away from an object that comes too near; the robot has no sensor that looks backwards.");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "The largest rate at which the speed increases.");
+    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "The largest rate at which the speed decreases.");
     visit.number("bearing_band_rad", self.bearing_band_rad, {0.0, 0.5}, "rad",
-                 "a bearing this small is straight ahead");
-    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn towards the object");
+                 "A bearing within this band is treated as zero.");
+    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s",
+                 "The largest turn rate towards the object.");
     visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "steepest change of the turn rate");
+                 "The largest rate at which the turn rate changes.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
-                 "bearing at which the robot only turns; the speed falls linearly on the way there");
+                 "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
+                 "value at zero.");
     visit.number("max_box_age_s", self.max_box_age_s, {0.05, 2.0}, "s",
-                 "a box from an older image counts as not found");
-    visit.number("search_after_s", self.search_after_s, {0.0, 10.0}, "s", "how long to stand before the search starts");
+                 "A box from an image older than this counts as not found.");
+    visit.number("search_after_s", self.search_after_s, {0.0, 10.0}, "s",
+                 "The time that the robot stands still after a loss before it starts to search.");
     visit.number("max_search_s", self.max_search_s, {0.0, 120.0}, "s",
-                 "how long to search before the object is given up");
-    visit.number("search_turn_radps", self.search_turn_radps, {0.0, 1.0}, "rad/s", "turn rate of the search");
+                 "The time that the robot searches before it gives the object up.");
+    visit.number("search_turn_radps", self.search_turn_radps, {0.0, 1.0}, "rad/s", "The turn rate while searching.");
   }
 };
 

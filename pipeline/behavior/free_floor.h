@@ -17,12 +17,13 @@ struct FreeFloorParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("min_clearance_m", self.min_clearance_m, {0.0, 3.0}, "m",
-                 "from the robot's middle to whatever the map holds");
+                 "The smallest distance from the robot's centre to any obstacle in the map.");
     visit.number("min_obstacle_height_m", self.min_obstacle_height_m, {0.0, 1.0}, "m",
-                 "what is lower can be driven over");
+                 "Lower surfaces are not obstacles, because the robot can drive over them.");
     visit.number("max_obstacle_height_m", self.max_obstacle_height_m, {0.1, 5.0}, "m",
-                 "what is higher is driven under");
-    visit.number("cell_m", self.cell_m, {0.01, 0.5}, "m", "of the grid in which that is worked out");
+                 "Higher surfaces are not obstacles, because the robot can drive under them.");
+    visit.number("cell_m", self.cell_m, {0.01, 0.5}, "m",
+                 "The cell size of the grid in which the free floor is computed.");
   }
 };
 

@@ -27,19 +27,23 @@ struct RouteParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.text("places_m", self.places_m,
-               "\"x, y; x, y; ...\" in the world, in order; empty: the robot stays where it is");
-    visit.flag("round", self.round, "after the last place the first again; off: it ends there");
-    visit.number("reached_m", self.reached_m, {0.02, 2.0}, "m", "so near a place counts as reached");
-    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "speed on the way");
+               "The places to visit in order, in world coordinates, as \"x, y; x, y; ...\"; when empty the robot stays "
+               "where it is.");
+    visit.flag("round", self.round,
+               "After the last place the robot returns to the first one; otherwise it stops there.");
+    visit.number("reached_m", self.reached_m, {0.02, 2.0}, "m", "A place counts as reached within this distance.");
+    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "The speed on the way between places.");
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
-                 "speed for each metre that is left, where that is less");
-    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn");
+                 "The speed per metre of remaining distance, where this is less than forward_mps.");
+    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "The largest turn rate.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
-                 "bearing at which the robot only turns; the speed falls linearly on the way there");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest change of speed");
+                 "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
+                 "value at zero.");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "The largest rate at which the speed changes.");
     visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "steepest change of the turn rate");
+                 "The largest rate at which the turn rate changes.");
   }
 };
 

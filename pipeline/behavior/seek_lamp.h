@@ -45,41 +45,50 @@ struct SeekLampParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("explore_turn_radps", self.explore_turn_radps, {0.05, 2.0}, "rad/s",
-                 "turn rate while shadows are looked for, once around at every place");
-    visit.number("explore_step_m", self.explore_step_m, {0.1, 10.0}, "m", "from one place to the next");
+                 "The turn rate while the robot looks for shadows; it turns once around at every place.");
+    visit.number("explore_step_m", self.explore_step_m, {0.1, 10.0}, "m",
+                 "The distance from one exploration place to the next.");
     visit.number("max_explore_places", self.max_explore_places, {1, 100}, "",
-                 "places without a shadow after which only ambient light is reckoned with");
+                 "After this many places without a shadow, only ambient light is assumed.");
     visit.number("max_locate_angle_deg", self.max_locate_angle_deg, {5.0, 80.0}, "deg",
-                 "a lamp further from the vertical is gone nearer to before it is measured");
+                 "The robot approaches a lamp that is further from the vertical than this before it measures it.");
     visit.number("min_distance_m", self.min_distance_m, {0.0, 10.0}, "m",
-                 "but never nearer than this, along the floor");
-    visit.number("min_locate_s", self.min_locate_s, {0.0, 60.0}, "s", "how long the lamp is measured at the least");
-    visit.number("max_locate_s", self.max_locate_s, {0.1, 120.0}, "s", "and at most");
+                 "The robot does not approach the lamp closer than this distance along the floor.");
+    visit.number("min_locate_s", self.min_locate_s, {0.0, 60.0}, "s",
+                 "The shortest time for which the lamp is measured.");
+    visit.number("max_locate_s", self.max_locate_s, {0.1, 120.0}, "s",
+                 "The longest time for which the lamp is measured.");
     visit.number("locate_turn_deg", self.locate_turn_deg, {0.0, 90.0}, "deg",
-                 "to each side meanwhile: turning tells the lamp from errors of the board");
+                 "The angle by which the robot turns to each side while measuring; turning separates the lamp's "
+                 "position from errors of the board.");
     visit.number("max_located_sigma_m", self.max_located_sigma_m, {0.001, 1.0}, "m",
-                 "a lamp that is known so well is measured");
-    visit.number("back_off_m", self.back_off_m, {0.0, 50.0}, "m", "away from the lamp, as far as there is a free way");
+                 "The lamp is located when the standard deviation of its position is at most this.");
+    visit.number("back_off_m", self.back_off_m, {0.0, 50.0}, "m",
+                 "The distance by which the robot backs off from the lamp, as far as the way is free.");
     visit.number("max_back_off_turn_deg", self.max_back_off_turn_deg, {0.0, 180.0}, "deg",
-                 "how far from straight away the way may lead where it is free for longer");
-    visit.number("max_shade_wait_s", self.max_shade_wait_s, {0.1, 60.0}, "s", "how long masks are waited for");
-    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "speed on the way");
+                 "The largest deviation from the direction straight away from the lamp, used when another direction is "
+                 "free for longer.");
+    visit.number("max_shade_wait_s", self.max_shade_wait_s, {0.1, 60.0}, "s",
+                 "The longest time for which the robot waits for shadow masks.");
+    visit.number("forward_mps", self.forward_mps, {0.01, 1.5}, "m/s", "The speed on the way between places.");
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
-                 "speed for each metre that is left, where that is less");
-    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "turn rate for each radian of bearing");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.05, 2.0}, "rad/s", "fastest turn");
+                 "The speed per metre of remaining distance, where this is less than forward_mps.");
+    visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.05, 2.0}, "rad/s", "The largest turn rate.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
-                 "bearing at which the robot only turns; the speed falls linearly on the way there");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest change of speed");
+                 "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
+                 "value at zero.");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "The largest rate at which the speed changes.");
     visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "steepest change of the turn rate");
-    visit.number("reached_m", self.reached_m, {0.01, 1.0}, "m", "so near a place counts as reached");
-    visit.number("facing_deg", self.facing_deg, {0.1, 30.0}, "deg", "so near a heading counts as turned to");
+                 "The largest rate at which the turn rate changes.");
+    visit.number("reached_m", self.reached_m, {0.01, 1.0}, "m", "A place counts as reached within this distance.");
+    visit.number("facing_deg", self.facing_deg, {0.1, 30.0}, "deg", "A heading counts as reached within this angle.");
     visit.number("max_pose_loss_s", self.max_pose_loss_s, {0.1, 60.0}, "s",
-                 "without a pose on its way, after which it stops");
+                 "The robot stops on its way when its pose has been unknown for this time.");
     visit.number("max_probes_loss_s", self.max_probes_loss_s, {0.1, 60.0}, "s",
-                 "without a board that can be read, after which only ambient light is reckoned with");
-    visit.section("floor", self.floor, "Which floor is free, by the map");
+                 "When the board has been unreadable for this time, only ambient light is assumed.");
+    visit.section("floor", self.floor, "The part of the floor that is free according to the map");
   }
 };
 

@@ -21,10 +21,12 @@ struct CorrelationParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("target_width", self.target_width, {0.01, 0.5}, "",
-                 "width of the wanted peak, as a share of the object");
-    visit.number("regularisation", self.regularisation, {1e-6, 1.0}, "", "keeps weak frequencies from being believed");
-    visit.number("learning_rate", self.learning_rate, {0.0, 1.0}, "", "share of each new image in the filter");
-    visit.number("anchor", self.anchor, {0.0, 1.0}, "", "share of the first image that the filter never forgets");
+                 "The width of the desired correlation peak, as a ratio of the object's size.");
+    visit.number("regularisation", self.regularisation, {1e-6, 1.0}, "",
+                 "The regularisation of the filter, which keeps weak frequencies from dominating.");
+    visit.number("learning_rate", self.learning_rate, {0.0, 1.0}, "", "The weight of each new image in the filter.");
+    visit.number("anchor", self.anchor, {0.0, 1.0}, "",
+                 "The weight of the first image that the filter keeps for ever.");
   }
 };
 

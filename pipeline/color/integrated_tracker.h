@@ -29,15 +29,20 @@ struct BallParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("diameter_m", self.diameter_m, {0.01, 2.0}, "m", "of the ball");
-    visit.number("min_distance_m", self.min_distance_m, {0.1, 100.0}, "m", "from the camera; gives the largest circle");
+    visit.number("diameter_m", self.diameter_m, {0.01, 2.0}, "m", "The diameter of the ball.");
+    visit.number("min_distance_m", self.min_distance_m, {0.1, 100.0}, "m",
+                 "The smallest distance from the camera to the ball; it determines the largest circle.");
     visit.number("max_distance_m", self.max_distance_m, {0.1, 100.0}, "m",
-                 "from the camera; gives the smallest circle");
+                 "The largest distance from the camera to the ball; it determines the smallest circle.");
     visit.number("min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
-                 "share of a circle on which the image's edge lies and runs along it, at first sight");
-    visit.number("min_kept_agreement", self.min_kept_agreement, {0.0, 1.0}, "", "the same of a ball that is followed");
-    visit.number("min_inside", self.min_inside, {0.0, 1.0}, "", "share of the circle in the ball's colours");
-    visit.number("max_around", self.max_around, {0.0, 1.0}, "", "share of the ring around it in these colours");
+                 "The smallest share of the circle that must lie on an image edge of the same direction when the ball "
+                 "is first found.");
+    visit.number("min_kept_agreement", self.min_kept_agreement, {0.0, 1.0}, "",
+                 "The same share for a ball that is being tracked.");
+    visit.number("min_inside", self.min_inside, {0.0, 1.0}, "",
+                 "The smallest share of the circle's area that must have the ball's colours.");
+    visit.number("max_around", self.max_around, {0.0, 1.0}, "",
+                 "The largest share of the surrounding ring that may have the ball's colours.");
   }
 };
 
@@ -55,19 +60,21 @@ struct IntegratedParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.numbers("dark_factors", self.dark_factors, {0.05, 1.0}, "",
-                  "what the lights of the model are multiplied by where there may be shade");
+                  "The factors by which the lights of the model are multiplied where the image may be shaded.");
     visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
-                 "a window farther than this from every histogram of a search is not looked at");
-    visit.number("max_found_divergence", self.max_found_divergence, {0.0, 0.7}, "nat",
-                 "what the circle's inside may differ from the nearest histogram at first sight");
+                 "Windows that differ more than this from every histogram of a search are discarded.");
+    visit.number(
+        "max_found_divergence", self.max_found_divergence, {0.0, 0.7}, "nat",
+        "The largest divergence between the circle's area and the nearest histogram when the ball is first found.");
     visit.number("max_kept_divergence", self.max_kept_divergence, {0.0, 0.7}, "nat",
-                 "the same of a ball that is followed");
+                 "The same divergence for a ball that is being tracked.");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
-                 "windows of each of the two searches of which the shape is looked at");
+                 "The number of windows of each of the two searches whose shape is examined.");
     visit.number("max_missed_images", self.max_missed_images, {1, 1000}, "",
-                 "images without the ball after which it is found as at first sight");
-    visit.section("search", self.search, "The two searches over the image; their sizes span what the ball can have");
-    visit.section("ball", self.ball, "Its shape");
+                 "After this many images without the ball, the stricter thresholds of a first detection apply again.");
+    visit.section("search", self.search,
+                  "The two searches over the image; their window sizes cover the sizes that the ball can have");
+    visit.section("ball", self.ball, "The shape of the ball");
   }
 };
 

@@ -23,16 +23,17 @@ struct LearnParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.section("bins", self.bins, "the histograms");
-    visit.section("lights", self.lights, "the simulated lights");
+    visit.section("bins", self.bins, "The colour histograms");
+    visit.section("lights", self.lights, "The simulated lights");
     visit.number("min_distinctiveness", self.min_distinctiveness, Range{0.0, 0.6}, "nat",
-                 "a region nearer than this to a single-coloured surface is widened or refused");
+                 "A region whose divergence from a single-coloured surface is less than this is widened or refused.");
     visit.flag("widen", self.widen,
-               "take in surroundings where a region is too much of one colour, instead of refusing it");
+               "A region that has too much of one colour is widened by its surroundings instead of being refused.");
     visit.number("max_widening", self.max_widening, Range{0.0, 2.0}, "",
-                 "largest growth of a box, as a share of its sides");
+                 "The largest growth of a box, as a ratio of its sides.");
     visit.number("surroundings", self.surroundings, Range{0.0, 2.0}, "",
-                 "width of the ring whose colours are the negatives, as a share of the box's sides; 0: none");
+                 "The width of the ring around the box whose colours are negative examples, as a ratio of the box's "
+                 "sides; 0 uses none.");
   }
 };
 

@@ -20,14 +20,15 @@ struct LightParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("steps", self.steps, Range{1, 5}, "", "simulated lights per channel");
+    visit.number("steps", self.steps, Range{1, 5}, "", "The number of simulated light levels per channel.");
     visit.number("min_level", self.min_level, Range{0.05, 1.0}, "",
-                 "darkest simulated light; below 0.4 false positives grow");
-    visit.number("max_level", self.max_level, Range{0.05, 1.0}, "", "brightest simulated light");
+                 "The darkest simulated light; below 0.4 the number of false positives grows.");
+    visit.number("max_level", self.max_level, Range{0.05, 1.0}, "", "The brightest simulated light.");
     visit.number("max_green_excess", self.max_green_excess, Range{0.0, 1.0}, "",
-                 "a light whose green exceeds the mean of its red and blue by more is implausible; 1 accepts all");
+                 "A light whose green exceeds the mean of its red and blue by more than this is implausible; 1 accepts "
+                 "every light.");
     visit.number("assumed", self.assumed, Range{0.05, 1.0}, "",
-                 "light assumed at learning unless a channel is brighter");
+                 "The light that is assumed while learning, unless a channel of the object is brighter.");
   }
 };
 

@@ -26,18 +26,19 @@ struct LocalParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("padding", self.padding, {0.5, 4.0}, "",
-                 "width of what is looked at around the box, in mean sides of the box");
-    visit.number("color_share", self.color_share, {0.0, 1.0}, "", "weight of colour against shape in the answer");
-    visit.number("color_rate", self.color_rate, {0.0, 1.0}, "", "share of each new image in the pixel colours");
+                 "The width of the region examined around the box, in mean sides of the box.");
+    visit.number("color_share", self.color_share, {0.0, 1.0}, "",
+                 "The weight of colour relative to shape in the response.");
+    visit.number("color_rate", self.color_rate, {0.0, 1.0}, "", "The weight of each new image in the pixel colours.");
     visit.number("inner_margin", self.inner_margin, {0.0, 0.45}, "",
-                 "what is cut off the box, in mean sides, before its colours count as the object's");
-    visit.number(
-        "min_light_step", self.min_light_step, {0.01, 1.0}, "",
-        "change of a channel's mean over the whole image (as a logarithm) that is taken for a change of the light");
+                 "The margin removed from the box, in mean sides, before its colours count as the object's.");
+    visit.number("min_light_step", self.min_light_step, {0.01, 1.0}, "",
+                 "A change of a channel's mean over the whole image, as a logarithm, larger than this is treated as a "
+                 "change of the light.");
     visit.number("light_rate", self.light_rate, {0.0, 1.0}, "",
-                 "how far the pixel colours follow such a change at once");
-    visit.section("correlation", self.correlation, "The filter that knows the object's shape");
-    visit.section("scale", self.scale, "The filter that knows its size");
+                 "The share of such a change that the pixel colours follow at once.");
+    visit.section("correlation", self.correlation, "The correlation filter for the object's shape");
+    visit.section("scale", self.scale, "The filter for the object's size");
   }
 };
 

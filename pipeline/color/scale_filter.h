@@ -18,9 +18,10 @@ struct ScaleParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("step", self.step, {1.005, 1.2}, "", "ratio of neighbouring scales");
-    visit.number("regularisation", self.regularisation, {1e-6, 1.0}, "", "keeps weak frequencies from being believed");
-    visit.number("learning_rate", self.learning_rate, {0.0, 1.0}, "", "share of each new image in the filter");
+    visit.number("step", self.step, {1.005, 1.2}, "", "The ratio of neighbouring scales.");
+    visit.number("regularisation", self.regularisation, {1e-6, 1.0}, "",
+                 "The regularisation of the filter, which keeps weak frequencies from dominating.");
+    visit.number("learning_rate", self.learning_rate, {0.0, 1.0}, "", "The weight of each new image in the filter.");
   }
 };
 

@@ -29,15 +29,17 @@ struct SearchParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("divergence", self.divergence, kDivergenceNames, "how histograms are compared");
+    visit.choice("divergence", self.divergence, kDivergenceNames, "The measure that compares histograms.");
     visit.choice("weights", self.weights, kBinWeightsNames,
-                 "plain: the dissertation's; surroundings: bins weigh what tells them apart");
-    visit.number("min_weight", self.min_weight, Range{0.0, 1.0}, "", "least weight of a bin");
-    visit.number("sizes", self.sizes, Range{1, 5}, "", "window sizes per image, around the one asked for");
-    visit.number("size_step", self.size_step, Range{1.01, 2.0}, "", "ratio of neighbouring sizes");
-    visit.number("max_stride_px", self.max_stride_px, Range{1.0, 64.0}, "px", "largest step between windows");
+                 "With plain all bins have the dissertation's weights; with surroundings, bins that distinguish the "
+                 "object from its surroundings weigh more.");
+    visit.number("min_weight", self.min_weight, Range{0.0, 1.0}, "", "The smallest weight of a bin.");
+    visit.number("sizes", self.sizes, Range{1, 5}, "",
+                 "The number of window sizes per image, centred on the expected size.");
+    visit.number("size_step", self.size_step, Range{1.01, 2.0}, "", "The ratio of neighbouring window sizes.");
+    visit.number("max_stride_px", self.max_stride_px, Range{1.0, 64.0}, "px", "The largest step between windows.");
     visit.number("min_steps_per_side", self.min_steps_per_side, Range{2, 32}, "",
-                 "steps per shorter side of the box, at least");
+                 "The smallest number of steps per shorter side of the box.");
   }
 };
 

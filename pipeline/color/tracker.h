@@ -48,35 +48,42 @@ struct DoubtParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("warm_up_images", self.warm_up_images, {0, 1000}, "",
-                 "images after a first sight in which the means are not yet trusted: a first sight's own conditions "
-                 "count instead");
-    visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "", "share of each sure image in the running means");
+                 "The number of images after a detection in which the running means are not used; the thresholds of "
+                 "the first detection apply instead.");
+    visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "",
+                 "The weight of each reliable image in the running means.");
     visit.number("min_sure_sharpness", self.min_sure_sharpness, {0.0, 50.0}, "",
-                 "a peak below this, with the next two, is doubted");
-    visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "", "a score below this share of its mean");
+                 "A response is doubtful when its peak is less sharp than this and both its score and its divergence "
+                 "are bad as well.");
+    visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "",
+                 "The score below which a response can be doubtful, as a ratio of the mean score.");
     visit.number("max_divergence_rise", self.max_divergence_rise, {0.0, 0.7}, "nat",
-                 "a divergence above its mean by more than this");
+                 "The rise of the divergence above its mean beyond which a response can be doubtful.");
     visit.number("min_agreement", self.min_agreement, {0.0, 1.0}, "",
-                 "a box in which more of the learned colours is missing holds something else, however sure the local "
-                 "tracker is");
+                 "A box that contains less of the learned colours than this holds another object, however reliable the "
+                 "local tracker is.");
     visit.number("max_foreign_images", self.max_foreign_images, {1, 1000}, "",
-                 "such images in a row end what was followed");
+                 "Tracking ends after this many consecutive images with another object in the box.");
     visit.number("max_doubtful_images", self.max_doubtful_images, {1, 1000}, "",
-                 "doubtful images after which the object is lost");
+                 "The object is lost after this many doubtful images.");
     visit.number("min_stay_sharpness", self.min_stay_sharpness, {0.0, 50.0}, "",
-                 "what ends a loss in the place where it began");
-    visit.number("min_stay_score", self.min_stay_score, {0.0, 2.0}, "", "and its score, as a share of the mean");
+                 "The peak sharpness with which the object is found again in the place where it was lost.");
     visit.number(
-        "min_reacquire_score", self.min_reacquire_score, {0.0, 2.0}, "",
-        "what a place elsewhere needs to be the object as it was last seen: its score, as a share of the mean");
+        "min_stay_score", self.min_stay_score, {0.0, 2.0}, "",
+        "The score with which the object is found again in the place where it was lost, as a ratio of the mean score.");
+    visit.number("min_reacquire_score", self.min_reacquire_score, {0.0, 2.0}, "",
+                 "The score with which the object is found again elsewhere with its last appearance, as a ratio of the "
+                 "mean score.");
     visit.number("min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
-                 "and how far it has the learned colours in the learned amounts, its light taken out");
+                 "The agreement with the learned colour amounts, corrected for the light, that finding it again "
+                 "elsewhere requires.");
     visit.number("min_found_sharpness", self.min_found_sharpness, {0.0, 50.0}, "",
-                 "what a sight anywhere else needs, as the first one does");
+                 "The peak sharpness that a first detection requires.");
     visit.number("min_found_score", self.min_found_score, {0.0, 2.0}, "",
-                 "and its score, as a share of what the learned picture itself scores");
-    visit.number("min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
-                 "and how far it has the learned colours in the learned amounts, its light taken out");
+                 "The score that a first detection requires, as a ratio of the score of the learned image itself.");
+    visit.number(
+        "min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
+        "The agreement with the learned colour amounts, corrected for the light, that a first detection requires.");
   }
 };
 
@@ -91,16 +98,17 @@ struct TrackParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("mode", self.mode, kTrackModeNames, "plain: the dissertation's Alg. 3.2; full: ours");
+    visit.choice("mode", self.mode, kTrackModeNames,
+                 "Choose plain for the dissertation's Alg. 3.2, and full for this project's extended tracker.");
     visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
-                 "a window farther than this from every learned histogram is not the object");
+                 "A window that differs more than this from every learned histogram is not the object.");
     visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
-                 "best windows of the search that are looked at closely");
+                 "The number of best windows of the search that are examined closely.");
     visit.number("max_size_ratio", self.max_size_ratio, {1.0, 20.0}, "",
-                 "largest and smallest box, as a factor of the learned one's sides");
+                 "The largest ratio between a side of the box and the learned one, upwards and downwards.");
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");
-    visit.section("doubt", self.doubt, "When it is doubted");
+    visit.section("doubt", self.doubt, "The criteria by which the tracker's answer is doubted, lost and found again");
   }
 };
 

@@ -17,8 +17,10 @@ struct ProbeLampParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.numbers("position_m", self.position_m, {-5.0, 5.0}, "m", "of the lamp that shines on the board, robot frame");
-    visit.number("sigma_m", self.sigma_m, {0.0001, 1.0}, "m", "how well each coordinate of it is known");
+    visit.numbers("position_m", self.position_m, {-5.0, 5.0}, "m",
+                  "The position of the lamp that illuminates the board, in the robot's frame.");
+    visit.number("sigma_m", self.sigma_m, {0.0001, 1.0}, "m",
+                 "The standard deviation of each coordinate of that position.");
   }
 };
 

@@ -24,9 +24,10 @@ struct ProbeParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.numbers("apex_m", self.apex_m, {-5.0, 5.0}, "m", "its tip, robot frame");
-    visit.numbers("foot_m", self.foot_m, {-5.0, 5.0}, "m", "middle of its base, robot frame");
-    visit.number("base_radius_m", self.base_radius_m, {0.002, 0.5}, "m", "of its base");
+    visit.numbers("apex_m", self.apex_m, {-5.0, 5.0}, "m", "The position of the cone's tip, in the robot's frame.");
+    visit.numbers("foot_m", self.foot_m, {-5.0, 5.0}, "m",
+                  "The position of the centre of the cone's base, in the robot's frame.");
+    visit.number("base_radius_m", self.base_radius_m, {0.002, 0.5}, "m", "The radius of the cone's base.");
   }
 };
 
@@ -46,21 +47,27 @@ struct BoardParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("probes", self.probes, {0, kMostProbes}, "", "0: the robot carries no board; 1: the left one alone");
-    visit.numbers("position_m", self.position_m, {-5.0, 5.0}, "m", "middle of the board's upper face, robot frame");
+    visit.number(
+        "probes", self.probes, {0, kMostProbes}, "",
+        "The number of cones on the board; 0 means that the robot has no board, and 1 means only the left cone.");
+    visit.numbers("position_m", self.position_m, {-5.0, 5.0}, "m",
+                  "The centre of the board's upper face, in the robot's frame.");
     visit.numbers("turn_deg", self.turn_deg, {-45.0, 45.0}, "deg",
-                  "how the board is turned out of level: a rotation vector in the robot's frame");
-    visit.number("width_m", self.width_m, {0.05, 5.0}, "m", "across");
-    visit.number("depth_m", self.depth_m, {0.05, 5.0}, "m", "along");
+                  "The rotation of the board out of the horizontal, as a rotation vector in the robot's frame.");
+    visit.number("width_m", self.width_m, {0.05, 5.0}, "m", "The size of the board across the robot.");
+    visit.number("depth_m", self.depth_m, {0.05, 5.0}, "m", "The size of the board along the robot.");
     visit.section("left", self.left, "The left cone");
     visit.section("right", self.right, "The right cone");
     visit.number("place_sigma_m", self.place_sigma_m, {0.0, 0.1}, "m",
-                 "standard deviation of each coordinate of tip and foot as measured");
-    visit.number("turn_sigma_deg", self.turn_sigma_deg, {0.0, 20.0}, "deg", "of the board's turn, about each axis");
+                 "The standard deviation of each measured coordinate of tip and base.");
+    visit.number("turn_sigma_deg", self.turn_sigma_deg, {0.0, 20.0}, "deg",
+                 "The standard deviation of the board's rotation about each axis.");
     visit.number("mount_sigma_m", self.mount_sigma_m, {1e-5, 0.5}, "m",
-                 "of the camera's place against the board before it was seen, each coordinate");
+                 "The standard deviation of each coordinate of the camera's position relative to the board, before the "
+                 "board has been observed.");
     visit.number("mount_sigma_deg", self.mount_sigma_deg, {1e-3, 20.0}, "deg",
-                 "of the camera's direction against the board before it was seen, about each axis");
+                 "The standard deviation of the camera's rotation relative to the board about each axis, before the "
+                 "board has been observed.");
   }
 };
 

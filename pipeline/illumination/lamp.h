@@ -27,17 +27,21 @@ struct LampParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("height_m", self.height_m, {0.1, 20.0}, "m", "of a lamp above the floor, where it is not measured");
+    visit.number("height_m", self.height_m, {0.1, 20.0}, "m",
+                 "The height of a lamp above the floor, where it is not measured.");
     visit.number("height_sigma_m", self.height_sigma_m, {1e-4, 10.0}, "m",
-                 "how well that is known; large: two shadows or several standpoints tell the height");
+                 "The standard deviation of that height; a large value lets two shadows or several viewpoints "
+                 "determine the height.");
     visit.number("max_disagreement_m", self.max_disagreement_m, {0.01, 10.0}, "m",
-                 "probes that put a lamp further apart than this are not believed");
+                 "Observations are rejected when two probes place the lamp further apart than this.");
     visit.number("min_pose_sigma_m", self.min_pose_sigma_m, {0.0, 1.0}, "m",
-                 "of the robot's place, at the least, whatever its estimate says of itself");
-    visit.number("min_pose_sigma_deg", self.min_pose_sigma_deg, {0.0, 20.0}, "deg", "of its heading, likewise");
-    visit.number("min_steady_images", self.min_steady_images, {1, 1000}, "", "images that must agree on a lamp");
+                 "The smallest standard deviation of the robot's position that is used, whatever its estimate states.");
+    visit.number("min_pose_sigma_deg", self.min_pose_sigma_deg, {0.0, 20.0}, "deg",
+                 "The smallest standard deviation of the robot's heading that is used, whatever its estimate states.");
+    visit.number("min_steady_images", self.min_steady_images, {1, 1000}, "",
+                 "The number of images that must agree before a lamp is accepted.");
     visit.number("max_missing_images", self.max_missing_images, {1, 1000}, "",
-                 "images in a row without a shadow that should be there: off, or moved");
+                 "A lamp is off or has moved after this many consecutive images without the expected shadow.");
   }
 };
 

@@ -24,7 +24,8 @@ struct ProbesParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("board", self.board, "The white board with its cones, as measured, in the robot's frame");
-    visit.section("registration", self.registration, "Finding the camera against the board in every image");
+    visit.section("registration", self.registration,
+                  "The estimation of the camera's pose relative to the board in every image");
     visit.section("shadow", self.shadow, "The cones' shadows (Alg. 5.1)");
   }
 };

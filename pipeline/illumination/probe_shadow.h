@@ -18,14 +18,17 @@ struct ShadowParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("lamp_radius_m", self.lamp_radius_m, {0.0, 1.0}, "m", "of a lamp: how soft shadows are");
-    visit.number("min_contrast", self.min_contrast, {0.5, 100.0}, "grey levels", "between board and shadow");
-    visit.number("min_contrast_ratio", self.min_contrast_ratio, {0.0, 1.0}, "", "the same, of the board's brightness");
+    visit.number("lamp_radius_m", self.lamp_radius_m, {0.0, 1.0}, "m",
+                 "The radius of a lamp, which determines how soft its shadows are.");
+    visit.number("min_contrast", self.min_contrast, {0.5, 100.0}, "grey levels",
+                 "The smallest contrast between board and shadow.");
+    visit.number("min_contrast_ratio", self.min_contrast_ratio, {0.0, 1.0}, "",
+                 "The smallest contrast between board and shadow, as a ratio of the board's brightness.");
     visit.number("min_support", self.min_support, {0.0, 1.0}, "",
-                 "of the places along a line, how many must show the shadow's own contrast");
+                 "The smallest share of the samples along a line that must show the shadow's contrast.");
     visit.number("max_angle_deg", self.max_angle_deg, {30.0, 88.0}, "deg",
-                 "of the light from the vertical: beyond it shadows are not looked for");
-    visit.number("spacing_px", self.spacing_px, {1.0, 50.0}, "px", "between the places along a line");
+                 "The largest angle between the light and the vertical at which shadows are searched for.");
+    visit.number("spacing_px", self.spacing_px, {1.0, 50.0}, "px", "The distance between the samples along a line.");
   }
 };
 

@@ -18,13 +18,15 @@ struct RegistrationParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("spacing_px", self.spacing_px, {1.0, 100.0}, "px", "between the points of an edge that are looked at");
+    visit.number("spacing_px", self.spacing_px, {1.0, 100.0}, "px", "The distance between the samples along an edge.");
     visit.number("first_reach_px", self.first_reach_px, {2.0, 15.0}, "px",
-                 "how far from where the mount says an edge is sought");
-    visit.number("next_reach_px", self.next_reach_px, {2.0, 15.0}, "px", "likewise, once it was found");
-    visit.number("min_contrast", self.min_contrast, {1.0, 100.0}, "grey levels", "of an edge that is believed");
+                 "The search distance on either side of an edge whose position is predicted by the mount alone.");
+    visit.number("next_reach_px", self.next_reach_px, {2.0, 15.0}, "px",
+                 "The search distance on either side of an edge that was found in the previous image.");
+    visit.number("min_contrast", self.min_contrast, {1.0, 100.0}, "grey levels",
+                 "The smallest contrast of an edge that is accepted.");
     visit.number("min_points", self.min_points, {6, 400}, "",
-                 "points found on board and cones; with fewer the image is not answered");
+                 "The smallest number of points on board and cones; an image with fewer gives no answer.");
   }
 };
 

@@ -26,8 +26,8 @@ struct ColorBins {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("space", self.space, kColorSpaceNames, "colour space of the histograms");
-    visit.number("per_channel", self.per_channel, Range{2, 16}, "", "bins per channel");
+    visit.choice("space", self.space, kColorSpaceNames, "The colour space of the histograms.");
+    visit.number("per_channel", self.per_channel, Range{2, 16}, "", "The number of bins per channel.");
   }
 };
 

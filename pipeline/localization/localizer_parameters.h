@@ -58,54 +58,65 @@ struct LocalizerParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("method", self.method, kMethodNames, "how a pose is corrected");
-    visit.choice(
-        "expectation", self.expectation, kExpectationKindNames,
-        "what draws the edges that should be visible: our own depth buffer, or OpenGL through OSMesa, which costs "
-        "ten times as much");
-    visit.flag("search", self.search, "several starts where the prior is wide; off: from the prior alone");
-    visit.flag("gate", self.gate, "a pose is corrected only where the evidence is enough");
+    visit.choice("method", self.method, kMethodNames, "The method that corrects a pose.");
+    visit.choice("expectation", self.expectation, kExpectationKindNames,
+                 "The renderer that determines the visible edges: raster is the project's own depth buffer; osmesa is "
+                 "OpenGL and costs ten times as much.");
+    visit.flag("search", self.search,
+               "Several hypotheses are examined where the prior is wide; otherwise only the prior's mean is.");
+    visit.flag("gate", self.gate, "A correction is accepted only when the evidence for it is sufficient.");
     visit.number("max_iterations", self.max_iterations, {1, 50}, "",
-                 "expectation and maximisation alternate at most so often");
-    visit.number("min_step_px", self.min_step_px, {0.001, 10.0}, "px", "a step that moves the image less ends them");
+                 "The largest number of iterations of expectation and maximisation.");
+    visit.number("min_step_px", self.min_step_px, {0.001, 10.0}, "px",
+                 "The iterations end when a step moves the image less than this.");
     visit.number("max_view_shift_px", self.max_view_shift_px, {0.0, 100.0}, "px",
-                 "a pose that moved the image further looks again at what is visible");
-    visit.number("system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
-                 "error of camera and map in the image, beside the segment's own");
-    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
-                 "error of the map's places: of each match, and of every pose");
-    visit.number("max_match_angle_deg", self.max_match_angle_deg, {1.0, 45.0}, "deg",
-                 "largest difference of direction");
-    visit.number("max_match_radius_px", self.max_match_radius_px, {2.0, 200.0}, "px", "largest effective distance");
-    visit.number("min_match_radius_px", self.min_match_radius_px, {1.0, 50.0}, "px",
-                 "what it shrinks to as the pose settles");
-    visit.number("max_tracking_sigma_px", self.max_tracking_sigma_px, {0.0, 200.0}, "px",
-                 "a prior whose sigma moves the image less is followed from one start");
-    visit.number("hypothesis_spacing_px", self.hypothesis_spacing_px, {2.0, 100.0}, "px",
-                 "motion of the image that makes a cell of the prior");
-    visit.number("hypotheses_per_cell", self.hypotheses_per_cell, {1.0, 100.0}, "", "of the prior");
-    visit.number("max_hypotheses", self.max_hypotheses, {1, 2000}, "", "however wide the prior is");
-    visit.number("hypotheses_per_image", self.hypotheses_per_image, {0, 2000}, "", "0: as many as the budget grants");
-    visit.number("finalists", self.finalists, {1, 64}, "", "starts that are refined");
-    visit.number("neighbours", self.neighbours, {0, 500}, "", "poses about the best one that are tried against it");
-    visit.number("walks", self.walks, {0, 20}, "", "how often a better neighbour starts this again");
-    visit.number("min_matches", self.min_matches, {2, 1000}, "", "gate; two where a narrow prior is followed");
-    visit.number("min_tracking_matched_ratio", self.min_tracking_matched_ratio, {0.0, 1.0}, "",
-                 "gate where a narrow prior is followed: share of the expected length found; what hides much of the "
-                 "map moves no pose");
-    visit.number("min_evidence", self.min_evidence, {-10.0, 2.0}, "",
-                 "gate where several poses were tried: agreement of image and map, in the worst parts of the image "
-                 "too, and lead, less distance and "
-                 "width of the prior");
-    visit.number("max_prior_chi2", self.max_prior_chi2, {1.0, 1000.0}, "", "gate: squared sigmas from the prior");
+                 "The visible edges are computed again when the pose has moved the image further than this.");
     visit.number(
-        "max_sigma_m", self.max_sigma_m, {0.001, 10.0}, "m",
-        "gate where several poses were tried: of the position's worst direction; after a search times 0.3 to 1.2, "
-        "by how much speaks for the pose");
-    visit.number("max_sigma_deg", self.max_sigma_deg, {0.01, 90.0}, "deg", "likewise of the worst axis of turning");
-    visit.number("max_rms_px", self.max_rms_px, {0.1, 50.0}, "px", "gate: of the distances of the matches");
+        "system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
+        "The standard deviation of the error of camera and map in the image, in addition to that of the segment.");
+    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
+                 "The standard deviation of positions in the map, for every match and for every pose.");
+    visit.number("max_match_angle_deg", self.max_match_angle_deg, {1.0, 45.0}, "deg",
+                 "The largest angle between an expected and a perceived edge that match.");
+    visit.number("max_match_radius_px", self.max_match_radius_px, {2.0, 200.0}, "px",
+                 "The largest effective distance between an expected and a perceived edge that match.");
+    visit.number("min_match_radius_px", self.min_match_radius_px, {1.0, 50.0}, "px",
+                 "The distance to which that radius shrinks while the pose converges.");
+    visit.number("max_tracking_sigma_px", self.max_tracking_sigma_px, {0.0, 200.0}, "px",
+                 "A prior whose standard deviation moves the image by at most this is tracked from one hypothesis.");
+    visit.number("hypothesis_spacing_px", self.hypothesis_spacing_px, {2.0, 100.0}, "px",
+                 "The motion of the image that separates two cells of the prior.");
+    visit.number("hypotheses_per_cell", self.hypotheses_per_cell, {1.0, 100.0}, "",
+                 "The number of hypotheses per cell of the prior.");
+    visit.number("max_hypotheses", self.max_hypotheses, {1, 2000}, "",
+                 "The largest number of hypotheses, however wide the prior is.");
+    visit.number("hypotheses_per_image", self.hypotheses_per_image, {0, 2000}, "",
+                 "The number of hypotheses examined per image; 0 examines as many as the budget grants.");
+    visit.number("finalists", self.finalists, {1, 64}, "", "The number of best hypotheses that are refined.");
+    visit.number("neighbours", self.neighbours, {0, 500}, "",
+                 "The number of poses around the best one that are compared with it.");
+    visit.number("walks", self.walks, {0, 20}, "",
+                 "The number of times that this comparison starts again from a better neighbour.");
+    visit.number("min_matches", self.min_matches, {2, 1000}, "",
+                 "The gate requires at least this many matches; when tracking from a narrow prior, two are enough.");
+    visit.number("min_tracking_matched_ratio", self.min_tracking_matched_ratio, {0.0, 1.0}, "",
+                 "The gate requires at least this matched-length ratio when tracking from a narrow prior, so that a "
+                 "hidden map moves no pose.");
+    visit.number(
+        "min_evidence", self.min_evidence, {-10.0, 2.0}, "",
+        "The gate requires at least this evidence after a search: the agreement of image and map, also in the worst "
+        "parts of the image, and the lead over the next hypothesis, less the distance to the prior and its width.");
+    visit.number("max_prior_chi2", self.max_prior_chi2, {1.0, 1000.0}, "",
+                 "The gate accepts at most this squared Mahalanobis distance to the prior.");
+    visit.number("max_sigma_m", self.max_sigma_m, {0.001, 10.0}, "m",
+                 "The gate accepts at most this standard deviation in the position's worst direction after a search, "
+                 "scaled by 0.3 to 1.2 depending on the evidence.");
+    visit.number("max_sigma_deg", self.max_sigma_deg, {0.01, 90.0}, "deg",
+                 "The gate accepts at most this standard deviation about the worst axis of rotation after a search.");
+    visit.number("max_rms_px", self.max_rms_px, {0.1, 50.0}, "px",
+                 "The gate accepts at most this root mean square of the distances of the matches.");
     visit.number("max_pieces", self.max_pieces, {16, 20000}, "",
-                 "visible pieces of edges worked with, nearest and longest first");
+                 "The largest number of visible edge pieces; the nearest and longest ones are kept.");
   }
 };
 

@@ -25,26 +25,37 @@ struct PoseTrackerParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("slip", self.slip, {0.0, 1.0}, "", "sigma of a step of the odometry, relative to its length");
-    visit.number("slip_turn", self.slip_turn, {0.0, 1.0}, "", "sigma of its turn, relative");
-    visit.number("drift_m", self.drift_m, {0.0, 0.2}, "m", "sigma of the position that every image adds");
-    visit.number("drift_deg", self.drift_deg, {0.0, 10.0}, "deg", "sigma of the direction that every image adds");
-    visit.number("tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg",
-                 "on a floor: sigma of the mount's roll and pitch as they were told; what images say of them is kept");
+    visit.number("slip", self.slip, {0.0, 1.0}, "",
+                 "The standard deviation of an odometry step, relative to its length.");
+    visit.number("slip_turn", self.slip_turn, {0.0, 1.0}, "",
+                 "The standard deviation of an odometry turn, relative to its angle.");
+    visit.number("drift_m", self.drift_m, {0.0, 0.2}, "m",
+                 "The standard deviation of the position that is added with every image.");
+    visit.number("drift_deg", self.drift_deg, {0.0, 10.0}, "deg",
+                 "The standard deviation of the direction that is added with every image.");
+    visit.number(
+        "tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg",
+        "The standard deviation of the mount's roll and pitch at the start, on a floor; it decreases with the images.");
     visit.number("level_deg", self.level_deg, {0.001, 30.0}, "deg",
-                 "on a floor: how level it is and how well the base knows its pitch; never surer of roll and pitch");
-    visit.number("height_m", self.height_m, {0.0005, 1.0}, "m", "on a floor: sigma of the camera's height");
-    visit.flag("floor", self.floor, "height, roll and pitch are those of a robot on a level floor");
+                 "The smallest standard deviation of roll and pitch, on a floor; it covers uneven floor and the error "
+                 "of the base's pitch.");
+    visit.number("height_m", self.height_m, {0.0005, 1.0}, "m",
+                 "The standard deviation of the camera's height, on a floor.");
+    visit.flag("floor", self.floor,
+               "Height, roll and pitch are those of a robot on a level floor; otherwise all six numbers are free.");
     visit.number("max_missed_corrections", self.max_missed_corrections, {1, 1000}, "",
-                 "images that should have corrected the pose and did not, after which it is lost; those that show "
-                 "nothing of the map do not count");
+                 "The pose is lost after this many images that should have corrected it and did not; images without "
+                 "visible map do not count.");
     visit.number("max_sigma_m", self.max_sigma_m, {0.01, 10.0}, "m",
-                 "sigma of the position along the floor beyond which the pose is lost too");
-    visit.number("max_sigma_deg", self.max_sigma_deg, {0.1, 90.0}, "deg", "likewise of the heading");
-    visit.number("widen", self.widen, {1.0, 10.0}, "", "growth of the belief with each search that fails when lost");
+                 "The pose is lost when the standard deviation of its position along the floor exceeds this.");
+    visit.number("max_sigma_deg", self.max_sigma_deg, {0.1, 90.0}, "deg",
+                 "The pose is lost when the standard deviation of its heading exceeds this.");
+    visit.number("widen", self.widen, {1.0, 10.0}, "",
+                 "The factor by which the covariance of a lost pose grows after each failed search.");
     visit.number("max_lost_sigma_m", self.max_lost_sigma_m, {0.05, 10.0}, "m",
-                 "the belief's position never grows beyond this sigma");
-    visit.number("max_lost_sigma_deg", self.max_lost_sigma_deg, {1.0, 90.0}, "deg", "nor its heading beyond this");
+                 "The standard deviation of a lost position does not grow beyond this.");
+    visit.number("max_lost_sigma_deg", self.max_lost_sigma_deg, {1.0, 90.0}, "deg",
+                 "The standard deviation of a lost heading does not grow beyond this.");
   }
 };
 

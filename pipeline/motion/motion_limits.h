@@ -18,11 +18,12 @@ struct KeepInParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.flag("enabled", self.enabled, "whether the area is kept at all; the odometry it rests on drifts");
-    visit.number("min_x_m", self.min_x_m, {-1000.0, 1000.0}, "m", "rear edge, seen from the pose of the start");
-    visit.number("max_x_m", self.max_x_m, {-1000.0, 1000.0}, "m", "front edge");
-    visit.number("min_y_m", self.min_y_m, {-1000.0, 1000.0}, "m", "right edge");
-    visit.number("max_y_m", self.max_y_m, {-1000.0, 1000.0}, "m", "left edge");
+    visit.flag("enabled", self.enabled, "The robot is kept inside the area; the odometry that this relies on drifts.");
+    visit.number("min_x_m", self.min_x_m, {-1000.0, 1000.0}, "m",
+                 "The rear edge of the area, seen from the start pose.");
+    visit.number("max_x_m", self.max_x_m, {-1000.0, 1000.0}, "m", "The front edge of the area.");
+    visit.number("min_y_m", self.min_y_m, {-1000.0, 1000.0}, "m", "The right edge of the area.");
+    visit.number("max_y_m", self.max_y_m, {-1000.0, 1000.0}, "m", "The left edge of the area.");
   }
 
   /// \return what is wrong with the keys together; empty when nothing is.
@@ -51,24 +52,27 @@ struct MotionParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "fastest forwards");
-    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s", "fastest backwards, where it is blind");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²", "steepest gain of speed");
+    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "The largest forward speed.");
+    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
+                 "The largest backward speed; the robot has no sensor that looks backwards.");
+    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
+                 "The largest rate at which the speed increases.");
     visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "steepest loss of speed towards a slower goal; a stop does not wait for it");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "fastest turn");
+                 "The largest rate at which the speed decreases towards a slower goal; a stop does not wait for it.");
+    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "The largest turn rate.");
     visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "steepest change of the turn rate");
+                 "The largest rate at which the turn rate changes.");
     visit.number("reaction_s", self.reaction_s, {0.0, 1.0}, "s",
-                 "from a command to the base obeying it, for the keep-in area");
+                 "The time from a command until the base obeys it, which the keep-in area accounts for.");
     visit.number("goal_timeout_s", self.goal_timeout_s, {0.02, 0.5}, "s",
-                 "age of the newest goal, counted from its image's stamp, past which zero is commanded");
+                 "Zero is commanded when the newest goal is older than this, counted from the stamp of its image.");
     visit.number("feedback_timeout_s", self.feedback_timeout_s, {0.02, 0.5}, "s",
-                 "age of the newest odometry past which zero is commanded and the robot disarms");
+                 "Zero is commanded and the robot disarms when the newest odometry is older than this.");
     visit.number("max_hold_s", self.max_hold_s, {0.1, 60.0}, "s",
-                 "how long a passing cause may hold the robot before it disarms and must be armed again");
-    visit.flag("armed_at_start", self.armed_at_start, "arms itself once, when it first may: for simulation only");
-    visit.section("keep_in", self.keep_in, "The area the robot may not leave, in the frame of its odometry");
+                 "The robot disarms when a passing cause has held it for this time; it must then be armed again.");
+    visit.flag("armed_at_start", self.armed_at_start,
+               "The robot arms itself once, as soon as arming is possible; for simulation only.");
+    visit.section("keep_in", self.keep_in, "The area that the robot may not leave, in the frame of its odometry");
   }
 };
 

@@ -21,20 +21,28 @@ struct ShadeParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("width", self.width, {16, 1024}, "", "columns of the masks");
-    visit.number("height", self.height, {16, 1024}, "", "rows of them");
-    visit.number("finer", self.finer, {1, 8}, "", "cells of the depth buffer along each side of a cell of the masks");
-    visit.number("lamp_cells", self.lamp_cells, {32, 2048}, "", "cells along each side of the six views from the lamp");
-    visit.number("near_m", self.near_m, {0.001, 10.0}, "m", "what is nearer to camera or lamp is not seen");
+    visit.number("width", self.width, {16, 1024}, "", "The number of columns of the masks.");
+    visit.number("height", self.height, {16, 1024}, "", "The number of rows of the masks.");
+    visit.number("finer", self.finer, {1, 8}, "", "The number of depth-buffer cells along each side of a mask cell.");
+    visit.number("lamp_cells", self.lamp_cells, {32, 2048}, "",
+                 "The number of cells along each side of the six views from the lamp.");
+    visit.number("near_m", self.near_m, {0.001, 10.0}, "m",
+                 "The distance of the near plane; surfaces nearer to the camera or the lamp are not drawn.");
     visit.number("margin", self.margin, {0.0, 0.01}, "",
-                 "a surface shades what lies behind it by this share of the way");
-    visit.number("lift", self.lift, {0.0, 0.1}, "", "volumes flatter than this share of the distance are none");
-    visit.number("max_surfaces", self.max_surfaces, {1, 10000000}, "", "drawn from the camera, and from the lamp");
-    visit.number("max_edges", self.max_edges, {1, 10000000}, "", "silhouettes whose volumes are drawn");
+                 "The distance behind a surface at which its shadow begins, as a ratio of the distance.");
+    visit.number("lift", self.lift, {0.0, 0.1}, "",
+                 "Shadow volumes flatter than this ratio of the distance are ignored.");
+    visit.number("max_surfaces", self.max_surfaces, {1, 10000000}, "",
+                 "The largest number of surfaces drawn from the camera, and from the lamp.");
+    visit.number("max_edges", self.max_edges, {1, 10000000}, "",
+                 "The largest number of silhouette edges whose shadow volumes are drawn.");
     visit.number("sigmas", self.sigmas, {0.0, 10.0}, "",
-                 "standard errors of pose, lamp and map by which the mask of what may be shaded is widened");
-    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m", "error of the map's corners, in every direction");
-    visit.number("max_widening_cells", self.max_widening_cells, {0, 7}, "", "by which it is widened at most");
+                 "The number of standard deviations of pose, lamp and map by which the mask of possibly shaded cells "
+                 "is widened.");
+    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
+                 "The standard deviation of the map's corners in every direction.");
+    visit.number("max_widening_cells", self.max_widening_cells, {0, 7}, "",
+                 "The largest number of cells by which the mask is widened.");
   }
 };
 

@@ -33,12 +33,16 @@ struct StageParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("every_frames", self.every_frames, {1, 60}, "frames", "the stage runs in one frame of so many");
-    visit.number("phase", self.phase, {0, 59}, "frames", "which one of them: the first is 0; less than every_frames");
-    visit.number("budget_us", self.budget_us, {100, 33000}, "µs", "time that a run may take");
+    visit.number("every_frames", self.every_frames, {1, 60}, "frames", "The stage runs in one of this many frames.");
+    visit.number(
+        "phase", self.phase, {0, 59}, "frames",
+        "The frame within that cycle in which the stage runs, counted from 0; it must be less than every_frames.");
+    visit.number("budget_us", self.budget_us, {100, 33000}, "µs", "The time that one run of the stage may take.");
     visit.number("units", self.units, {0, 1'000'000}, "1",
-                 "units of work granted to a run where no clock decides (lock-step, counting); 0: all it asks for");
-    visit.choice("on_overrun", self.on_overrun, kOnOverrunNames, "what follows a run that took longer than its budget");
+                 "The units of work that one run is granted where no clock decides (lock-step, replay, counting); 0 "
+                 "grants all that it requests.");
+    visit.choice("on_overrun", self.on_overrun, kOnOverrunNames,
+                 "The reaction to a run that took longer than its budget.");
   }
 
   /// \return what is wrong with the keys together, empty when nothing is.

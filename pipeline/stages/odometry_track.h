@@ -19,9 +19,12 @@ struct OdometryScales {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("scale_forward", self.scale_forward, kRange, "",
-                 "the base's way times this is the robot's: cgsr calibrate odometry");
-    visit.number("scale_turn", self.scale_turn, kRange, "", "likewise, its turn");
+    visit.number(
+        "scale_forward", self.scale_forward, kRange, "",
+        "The factor from the distance that the base reports to the robot's, as estimated by cgsr calibrate odometry.");
+    visit.number(
+        "scale_turn", self.scale_turn, kRange, "",
+        "The factor from the turn that the base reports to the robot's, as estimated by cgsr calibrate odometry.");
   }
 };
 

@@ -26,10 +26,10 @@ struct ShadeStageParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("max_lamp_sigma_m", self.max_lamp_sigma_m, {0.001, 10.0}, "m",
-                 "a lamp that is known no better makes no masks");
+                 "Masks are computed only for a lamp whose standard deviation is at most this.");
     visit.number("max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
-                 "so far the lamp's estimate may wander before its silhouettes are made anew");
-    visit.section("masks", self.masks, "How shaded regions are found (5.2)");
+                 "The silhouettes are computed again when the lamp's estimate has moved further than this.");
+    visit.section("masks", self.masks, "Computation of the shadow masks (5.2)");
   }
 };
 

@@ -1,35 +1,20 @@
 #include "platform/config/canonical.h"
 
-#include <fmt/format.h>
+#include <set>
 
-#include "platform/config/tree.h"
+#include <fmt/format.h>
 
 namespace cgsr::config {
 
-void Canonical::number(std::string_view name, int value, Range<int>, std::string_view, std::string_view) {
-  lines_[prefix_ + std::string(name)] = fmt::to_string(value);
-}
-
-void Canonical::number(std::string_view name, double value, Range<double>, std::string_view, std::string_view) {
-  lines_[prefix_ + std::string(name)] = spelled(value);
-}
-
-// The shortest text that reads back to the same bits; a negative zero means what a zero means.
-std::string Canonical::spelled(double value) {
-  return fmt::to_string(value == 0.0 ? 0.0 : value);
-}
-
-void Canonical::flag(std::string_view name, bool value, std::string_view) {
-  lines_[prefix_ + std::string(name)] = value ? "true" : "false";
-}
-
-void Canonical::text(std::string_view name, const std::string& value, std::string_view) {
-  lines_[prefix_ + std::string(name)] = one_line(toml::value<std::string>(value));
-}
-
-std::string Canonical::toml() const {
+std::string to_canonical(const std::vector<Section>& sections) {
+  std::set<std::string> lines;
+  for (const Section& section : sections) {
+    for (const Entry& entry : section.entries) {
+      lines.insert(fmt::format("{} = {}\n", key_path(section, entry), entry.value));
+    }
+  }
   std::string text;
-  for (const auto& [path, value] : lines_) text += fmt::format("{} = {}\n", path, value);
+  for (const std::string& line : lines) text += line;
   return text;
 }
 

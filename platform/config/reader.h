@@ -3,6 +3,7 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
+#include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -11,26 +12,22 @@
 #include <vector>
 
 #include "platform/config/document.h"
+#include "platform/config/layers.h"
+#include "platform/config/provenance.h"
 #include "platform/error.h"
 #include "platform/parameters.h"
 
 namespace cgsr::config {
 
-/// What becomes of a key that a file does not name.
-enum class Missing {
-  kIsAnError,     ///< every key and section must be there: the files that robots ship with say all they mean.
-  kTakesDefault,  ///< tools and tests name only what they change.
-};
-
-/// Fills a parameter struct from a document and collects everything that is wrong with it: unknown keys and sections
-/// (with the nearest known spelling), missing ones, wrong types, values out of range or not finite, unknown words of a
-/// choice.
+/// Fills a parameter struct from a file and the files that it extends, and collects everything that is wrong with any of them, each with the file
+/// and line in which it stands: unknown keys and sections (with the nearest known spelling, or their present name), wrong types, values out of
+/// range or not finite, unknown words of a choice. A key that no file names keeps its default.
 ///
 /// A section's struct may have `std::string inconsistency() const`: what is wrong with its keys together, empty when
 /// nothing is. It is asked once all its keys are good by themselves.
 class Reader {
  public:
-  Reader(const Document& document, Missing missing);
+  explicit Reader(Layers layers);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
@@ -40,6 +37,9 @@ class Reader {
               std::string_view meaning);
   void flag(std::string_view name, bool& value, std::string_view meaning);
   void text(std::string_view name, std::string& value, std::string_view meaning);
+
+  /// The name of a file, relative to the file in which it stands. \param value  as the program can open it; empty stays empty.
+  void path(std::string_view name, std::string& value, std::string_view meaning);
 
   template <class Enum, class Names>
   void choice(std::string_view name, Enum& value, const Names& names, std::string_view /*meaning*/) {
@@ -79,12 +79,22 @@ class Reader {
   /// Notes where the section stands, for what can only be judged later.
   void line(int& value) const;
 
-  /// The outermost struct. \return nothing, or every problem, a line each, in the order of the file.
+  /// The outermost struct. \return nothing, or every problem, a line each, in the order of the files and lines.
   template <class Struct>
   Result<void> read(Struct& value) {
     read_members(value);
     return finish();
   }
+
+  /// The same without asking whether the outermost sections go together: for a program that needs only some of them.
+  template <class Struct>
+  Result<void> read_sections(Struct& value) {
+    Struct::describe(value, *this);
+    return finish();
+  }
+
+  /// \return where the values came from, once they have been read.
+  [[nodiscard]] const Provenance& provenance() const;
 
  private:
   struct State;
@@ -117,18 +127,19 @@ class Reader {
 /// \return the parameters of `document`, or every problem at once: `config/home.toml:14: stage.track.budget_us = 90000
 /// is not in 100..33000 µs`
 template <class Parameters>
-Result<Parameters> read(const Document& document, Missing missing) {
+Result<Parameters> read(const Document& document) {
   Parameters parameters;
-  Reader reader(document, missing);
+  Reader reader{Layers(document)};
   if (auto outcome = reader.read(parameters); !outcome) return tl::unexpected(outcome.error());
   return parameters;
 }
 
+/// \return the parameters of a file that extends no other.
 template <class Parameters>
-Result<Parameters> read_file(const std::filesystem::path& file, Missing missing) {
+Result<Parameters> read_file(const std::filesystem::path& file) {
   const auto document = Document::load(file);
   if (!document) return tl::unexpected(document.error());
-  return read<Parameters>(*document, missing);
+  return read<Parameters>(*document);
 }
 
 }  // namespace cgsr::config

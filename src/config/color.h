@@ -16,7 +16,7 @@ struct Color {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("learn", self.learn, "Learning an object (Alg. 3.1)");
-    visit.section("track", self.track, "Finding it again (Alg. 3.2 and what stands around it)");
+    visit.section("track", self.track, "Finding the object again (Alg. 3.2 and its extensions)");
   }
 };
 

@@ -13,7 +13,9 @@
 #include "pipeline/motion/motion_limits.h"
 #include "pipeline/stages/odometry_track.h"
 #include "pipeline/vision_loop.h"
+#include "platform/config/provenance.h"
 #include "src/config/color.h"
+#include "src/config/light.h"
 #include "src/config/whereabouts.h"
 
 namespace cgsr::config {
@@ -39,10 +41,10 @@ struct LearnRegion {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("x_px", self.x_px, {0, 8192}, "px", "left edge");
-    visit.number("y_px", self.y_px, {0, 8192}, "px", "upper edge");
-    visit.number("width_px", self.width_px, {0, 8192}, "px", "0: nothing is learned");
-    visit.number("height_px", self.height_px, {0, 8192}, "px", "0: nothing is learned");
+    visit.number("x_px", self.x_px, {0, 8192}, "px", "The left edge of the region.");
+    visit.number("y_px", self.y_px, {0, 8192}, "px", "The upper edge of the region.");
+    visit.number("width_px", self.width_px, {0, 8192}, "px", "The width of the region; with 0 nothing is learned.");
+    visit.number("height_px", self.height_px, {0, 8192}, "px", "The height of the region; with 0 nothing is learned.");
   }
 
   [[nodiscard]] bool empty() const { return width_px == 0 || height_px == 0; }
@@ -56,14 +58,15 @@ struct Run {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice(
-        "pace", self.pace, kPaceNames,
-        "lock_step: the stamps are the time; real_time: likewise, but no faster than the clock; live: a thread "
-        "per task");
-    visit.number("result_latency_s", self.result_latency_s, {0.0, 0.5}, "s",
-                 "in lock-step: from an image's stamp until its result reaches motion, however slow the machine");
-    visit.text("model", self.model, "the object to follow: a file that cgsr learn wrote");
-    visit.section("learn", self.learn, "Without a model: what lies here in the first image is learned and followed");
+    visit.choice("pace", self.pace, kPaceNames,
+                 "With lock_step the stamps are the time; real_time is the same, but no faster than the clock; live "
+                 "runs a thread per task.");
+    visit.number(
+        "result_latency_s", self.result_latency_s, {0.0, 0.5}, "s",
+        "The time from an image's stamp until its result reaches motion in lock-step, however slow the machine is.");
+    visit.path("model", self.model, "The object to follow: a model file written by cgsr learn.");
+    visit.section("learn", self.learn,
+                  "The region of the first image that is learned and followed when no model is given");
   }
 };
 
@@ -76,10 +79,10 @@ struct Pinhole {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("fx_px", self.fx_px, {10.0, 20000.0}, "px", "focal length along x");
-    visit.number("fy_px", self.fy_px, {10.0, 20000.0}, "px", "focal length along y");
-    visit.number("cx_px", self.cx_px, {-10000.0, 20000.0}, "px", "column of the optical axis");
-    visit.number("cy_px", self.cy_px, {-10000.0, 20000.0}, "px", "row of the optical axis");
+    visit.number("fx_px", self.fx_px, {10.0, 20000.0}, "px", "The focal length along x.");
+    visit.number("fy_px", self.fy_px, {10.0, 20000.0}, "px", "The focal length along y.");
+    visit.number("cx_px", self.cx_px, {-10000.0, 20000.0}, "px", "The column of the optical axis.");
+    visit.number("cy_px", self.cy_px, {-10000.0, 20000.0}, "px", "The row of the optical axis.");
   }
 };
 
@@ -91,8 +94,9 @@ struct Camera {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("source", self.source, kCameraSourceNames,
-                 "replay: files; sim: the simulated home, and with it the base on its virtual CAN bus and the lines");
-    visit.section("pinhole", self.pinhole, "The optics of the images that the camera delivers");
+                 "Choose replay for files; sim is the simulated home, together with the base on its virtual CAN bus "
+                 "and its lines.");
+    visit.section("pinhole", self.pinhole, "The optics of the camera's images");
     visit.section("replay", self.replay, "Video files and image folders as a camera");
   }
 };
@@ -108,17 +112,18 @@ struct Switches {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.text("arming_line", self.arming_line,
-               "input whose rising edge arms the robot and whose falling edge disarms it; empty: none");
+               "The input line whose rising edge arms the robot and whose falling edge disarms it; empty means none.");
     visit.text("probe_lamp_line", self.probe_lamp_line,
-               "output that switches the probe board's own lamp; its shadows check board and probes before they are "
-               "trusted; empty: none");
+               "The output line that switches the lamp on the probe board, whose shadows check board and probes before "
+               "they are used; empty means none.");
     visit.text("room_lamp_line", self.room_lamp_line,
-               "output that switches the room's lamp, also beside a switch in the wall: what changes with it is its "
-               "shadow; empty: none");
-    visit.text("fill_light_line", self.fill_light_line, "output that switches a light on faces; empty: none");
+               "The output line that switches the room's lamp, possibly beside a wall switch; the shadow that changes "
+               "with it is the lamp's; empty means none.");
+    visit.text("fill_light_line", self.fill_light_line,
+               "The output line that switches a light on faces; empty means none.");
     visit.number("answer_timeout_s", self.answer_timeout_s, {0.06, 10.0}, "s",
-                 "a line that has not acknowledged by then counts as one that does not answer");
-    visit.section("probe_lamp", self.probe_lamp, "The probe board's own lamp");
+                 "A line that has not acknowledged after this time counts as failed.");
+    visit.section("probe_lamp", self.probe_lamp, "The lamp on the probe board");
   }
 
   /// By LampLine.
@@ -139,6 +144,7 @@ struct Robot {
   Color color;
   RobotLocalization localization;
   stages::OdometryScales odometry;
+  Mount mount;
   color::IntegratedParameters integrated;
   illumination::ProbesParameters probes;
   illumination::LampParameters lamp;
@@ -146,27 +152,33 @@ struct Robot {
   Task task;
   behavior::FollowParameters follow;
   MotionParameters motion;
+  Provenance provenance;  ///< where the values came from; not a value itself.
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.section("run", self.run, "How the program runs, and after what");
-    visit.section("camera", self.camera, "Where images come from");
+    visit.section("run", self.run, "How the program runs");
+    visit.section("camera", self.camera, "The source of the images");
     visit.section("sim", self.sim, "The simulated home (camera.source = \"sim\")");
-    visit.section("drive", self.drive, "The base that goes with replayed images: a unicycle without wheels");
+    visit.section("drive", self.drive, "The base that is used with replayed images: an ideal unicycle");
     visit.section("rmp", self.rmp, "The Segway on a CAN bus: the base of the simulated home");
-    visit.section("switches", self.switches, "Named lines");
-    visit.section("stage", self.stage, "The schedule: which stage runs in which frame and what it may cost");
+    visit.section("switches", self.switches, "Named input and output lines");
+    visit.section("stage", self.stage, "The schedule: the frames in which each stage runs and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
-    visit.section("localization", self.localization, "Where the robot is (chapter 4)");
-    visit.section("odometry", self.odometry, "What the base reports of its way, scaled before it carries the pose");
-    visit.section("integrated", self.integrated,
-                  "A ball, bright everywhere and dark where there may be shade (5.3; task.kind = \"lamp\")");
-    visit.section("probes", self.probes, "The probe board and how it is looked at (Alg. 5.1)");
-    visit.section("lamp", self.lamp, "What is known of lamps, and how observations become one (Eq. 5.1, 5.2)");
-    visit.section("shade", self.shade, "What lies in the lamp's shadow (5.2)");
-    visit.section("task", self.task, "What the robot does");
-    visit.section("follow", self.follow, "Following an object: how close, how fast, and what to do when it is gone");
-    visit.section("motion", self.motion, "How fast the wheels may be told to go, and when they are told to stop");
+    visit.section("localization", self.localization, "Localization (chapter 4)");
+    visit.section("odometry", self.odometry,
+                  "The scales of the base's odometry, applied before it propagates the pose");
+    visit.section("mount", self.mount,
+                  "The pose of the camera on the robot, for cgsr light and cgsr calibrate probes where "
+                  "localization.mount names no file");
+    visit.section(
+        "integrated", self.integrated,
+        "The ball tracker with separate searches in bright and possibly shaded regions (5.3; task.kind = \"lamp\")");
+    visit.section("probes", self.probes, "The probe board and how it is observed (Alg. 5.1)");
+    visit.section("lamp", self.lamp, "Prior knowledge of lamps, and the fusion of observations (Eq. 5.1, 5.2)");
+    visit.section("shade", self.shade, "The shadow masks of the lamp (5.2)");
+    visit.section("task", self.task, "The task of the robot");
+    visit.section("follow", self.follow, "Following an object: distance, speed and the reaction to a loss");
+    visit.section("motion", self.motion, "The limits of wheel commands and the conditions for a stop");
   }
 
   /// \return what is wrong with the sections together; empty when nothing is.

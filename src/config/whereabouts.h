@@ -8,6 +8,7 @@
 #include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/pose_tracker.h"
 #include "platform/parameters.h"
+#include "src/config/prior.h"
 
 namespace cgsr::config {
 
@@ -22,12 +23,14 @@ struct StartMarker {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("id", self.id, {-1, 49}, "", "its number among the 4x4 markers (OpenCV's DICT_4X4_50); -1: none");
-    visit.number("side_m", self.side_m, {0.01, 2.0}, "m", "side of its black square");
-    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "of its middle, in the world");
-    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "of its middle");
-    visit.number("z_m", self.z_m, {-100.0, 100.0}, "m", "of its middle, above the floor");
-    visit.number("facing_deg", self.facing_deg, {-360.0, 360.0}, "deg", "whither it looks, from the world's x axis");
+    visit.number("id", self.id, {-1, 49}, "",
+                 "The number of the marker among the 4x4 markers (OpenCV's DICT_4X4_50); -1 means none.");
+    visit.number("side_m", self.side_m, {0.01, 2.0}, "m", "The side of the marker's black square.");
+    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "The x coordinate of the marker's centre in the world.");
+    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "The y coordinate of the marker's centre in the world.");
+    visit.number("z_m", self.z_m, {-100.0, 100.0}, "m", "The height of the marker's centre above the floor.");
+    visit.number("facing_deg", self.facing_deg, {-360.0, 360.0}, "deg",
+                 "The direction of the marker's normal, from the world's x axis.");
   }
 };
 
@@ -43,15 +46,17 @@ struct StartPose {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "in the world");
-    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "in the world");
-    visit.number("heading_deg", self.heading_deg, {-360.0, 360.0}, "deg", "from the world's x axis, to the left");
-    visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "standard deviation of each coordinate");
-    visit.number("sigma_deg", self.sigma_deg, {0.01, 90.0}, "deg", "standard deviation of the heading");
-    visit.text("file", self.file,
-               "where a run leaves its pose for the next one, which prefers it to the above; empty: nowhere");
+    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "The x coordinate of the robot in the world.");
+    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "The y coordinate of the robot in the world.");
+    visit.number("heading_deg", self.heading_deg, {-360.0, 360.0}, "deg",
+                 "The heading from the world's x axis, positive to the left.");
+    visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "The standard deviation of each coordinate.");
+    visit.number("sigma_deg", self.sigma_deg, {0.01, 90.0}, "deg", "The standard deviation of the heading.");
+    visit.path(
+        "file", self.file,
+        "The file in which a run stores its last pose; the next run prefers it to the pose above; empty means none.");
     visit.section("marker", self.marker,
-                  "A marker of known place, looked for in the first image when there is no such file");
+                  "A marker at a known place that is searched for in the first image when there is no such file");
   }
 };
 
@@ -62,19 +67,26 @@ struct RobotLocalization {
   std::string mount;
   double axle_height_m = 0.24;
   StartPose start;
+  PriorParameters prior;
   localization::LocalizerParameters localizer;
   localization::PoseTrackerParameters tracker;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.text("map", self.map,
-               "geometry of the home (.obj, .gltf, .cao or what cgsr map import wrote); empty: no map");
-    visit.text("camera", self.camera, "intrinsics with the lens, as ROS's camera_calibration writes them");
-    visit.text("mount", self.mount, "where the camera is on the robot: [mount] of what cgsr sim export writes");
-    visit.number("axle_height_m", self.axle_height_m, {0.0, 2.0}, "m", "of the axle about which the base leans");
-    visit.section("start", self.start, "Where the robot stands when it boots");
-    visit.section("localizer", self.localizer, "Correcting a pose by an image (Alg. 4.1, 4.2)");
-    visit.section("tracker", self.tracker, "The pose from image to image");
+    visit.path("map", self.map,
+               "The geometry of the home (.obj, .gltf, .cao or the output of cgsr map import); empty means no map.");
+    visit.path("camera", self.camera,
+               "The intrinsics with the lens distortion, in the format of ROS's camera_calibration.");
+    visit.path("mount", self.mount,
+               "The file with the pose of the camera on the robot: its section [mount], as written by cgsr calibrate "
+               "mount or cgsr sim export.");
+    visit.number("axle_height_m", self.axle_height_m, {0.0, 2.0}, "m",
+                 "The height of the axle about which the base leans.");
+    visit.section("start", self.start, "The robot's pose at boot");
+    visit.section("prior", self.prior,
+                  "The uncertainty of a pose given to cgsr localize; a robot begins with that of localization.start");
+    visit.section("localizer", self.localizer, "Correction of a pose with one image (Alg. 4.1, 4.2)");
+    visit.section("tracker", self.tracker, "Propagation of the pose from image to image");
   }
 };
 
@@ -95,9 +107,10 @@ struct Task {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice("kind", self.kind, kTaskKindNames,
-                 "follow: an object; route: from place to place; lamp: Algorithm 5.2; the last two need a map");
-    visit.section("route", self.route, "The places, and how fast");
-    visit.section("lamp", self.lamp, "Explore, locate the lamp, back off, track (Alg. 5.2)");
+                 "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
+                 "Algorithm 5.2; the last two need a map.");
+    visit.section("route", self.route, "The places and the speed of a route");
+    visit.section("lamp", self.lamp, "Exploring, locating the lamp, backing off and tracking (Alg. 5.2)");
   }
 };
 

@@ -34,7 +34,7 @@ class LightRun {
   [[nodiscard]] int answered() const { return answered_; }
   /// \return why the last image without a lamp had none.
   [[nodiscard]] std::string_view last_cause() const { return last_cause_; }
-  [[nodiscard]] const LightConfig& config() const { return config_; }
+  [[nodiscard]] const config::Light& config() const { return config_; }
   /// For the terminal: where lamps are, and what was in the way.
   [[nodiscard]] std::vector<std::string> summary() const;
 
@@ -45,7 +45,7 @@ class LightRun {
   LightRun(const LightOptions& options, LightSetup setup, std::vector<PoseRow> poses);
 
   LightOptions options_;
-  LightConfig config_;
+  config::Light config_;
   ImageInput input_;
   std::vector<PoseRow> poses_;
   illumination::ProbeObserver observer_;

@@ -1,19 +1,15 @@
 #include "src/light/light_setup.h"
 
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "platform/config/reader.h"
+#include "src/config/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
 
 namespace cgsr::app {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 /// Takes the probe board that a robot.toml states, where it states one.
 Result<void> take_board(const std::string& robot_file, illumination::BoardParameters& board) {
@@ -37,31 +33,20 @@ Result<void> take_board(const std::string& robot_file, illumination::BoardParame
 
 }  // namespace
 
-geometry::Pose MountParameters::X_RC() const {
-  const double down = down_deg / kDegPerRad;
-  const double s = std::sin(down);
-  const double c = std::cos(down);
-  geometry::Pose X = geometry::Pose::Identity();
-  X.linear().col(0) = Eigen::Vector3d(0.0, -1.0, 0.0);
-  X.linear().col(1) = Eigen::Vector3d(-s, 0.0, -c);
-  X.linear().col(2) = Eigen::Vector3d(c, 0.0, -s);
-  const Eigen::Vector3d turn(turn_deg[0], turn_deg[1], turn_deg[2]);
-  X.linear() = geometry::rotation_of(turn / kDegPerRad) * X.linear();
-  X.translation() = Eigen::Vector3d(position_m[0], position_m[1], position_m[2]);
-  return X;
-}
-
 Result<LightSetup> open_light_setup(const std::string& config_file, const std::string& camera_file,
                                     const std::string& mount_file, const std::string& images) {
-  auto config = config::read_file<LightConfig>(config_file, config::Missing::kTakesDefault);
+  auto config = config::load_light(config_file);
   if (!config) return tl::unexpected(config.error());
   const auto camera = read_camera(camera_file);
   if (!camera) return tl::unexpected(camera.error());
   geometry::Pose X_RC = config->mount.X_RC();
-  if (!mount_file.empty()) {
-    const auto mount = read_mount(mount_file);
+  const std::string& calibrated = mount_file.empty() ? config->mount_file : mount_file;
+  if (!calibrated.empty()) {
+    const auto mount = read_mount(calibrated);
     if (!mount) return tl::unexpected(mount.error());
     X_RC = *mount;
+  }
+  if (!mount_file.empty()) {
     if (const auto taken = take_board(mount_file, config->probes.board); !taken) return tl::unexpected(taken.error());
   }
   auto board = illumination::make_board(config->probes.board, X_RC, *camera);

@@ -9,6 +9,7 @@
 #include "pipeline/world/load.h"
 #include "platform/count_marks.h"
 #include "platform/work_budget.h"
+#include "src/config/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
 #include "src/plug_in/expectation.h"

@@ -13,6 +13,7 @@
 namespace cgsr::app::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -26,7 +27,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(CommandLine, HelpNamesEveryCommand) {
   const auto help = run_cgsr({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "check", "learn", "track", "map", "reproduce", "sim"})
+  for (const char* command : {"run", "check", "config", "learn", "track", "map", "reproduce", "sim"})
     EXPECT_THAT(help.output, HasSubstr(command));
 }
 
@@ -138,6 +139,27 @@ TEST(CommandLine, PlainModeHasAConfigurationOfItsOwn) {
     return nlohmann::json::parse(read_text(scratch / "j"))["config_sha256"].get<std::string>();
   };
   EXPECT_NE(hash_of("plain"), hash_of("full"));
+}
+
+TEST(CommandLine, ConfigWritesShowsComparesAndExplains) {
+  const ScratchFolder scratch;
+  const std::string file = scratch / "robot.toml";
+  ASSERT_EQ(run_cgsr({"config", "new", "--recording", "--output", file}).exit_code, 0);
+  const auto shown = run_cgsr({"config", "show", file});
+  EXPECT_EQ(shown.exit_code, 0) << shown.errors;
+  EXPECT_THAT(shown.output,
+              AllOf(HasSubstr("\"recording.mp4\""), HasSubstr("# " + file + ":4"), HasSubstr("# default")));
+  const auto differences = run_cgsr({"config", "diff", file});
+  EXPECT_EQ(differences.exit_code, 0) << differences.errors;
+  EXPECT_THAT(differences.output, AllOf(HasSubstr("run.learn.width_px = 80 ("), HasSubstr(", 0 (default)")));
+  EXPECT_THAT(run_cgsr({"config", "diff", file, file}).output, StartsWith("0 of "));
+  EXPECT_THAT(run_cgsr({"config", "keys", "goal_timeout"}).output, StartsWith("motion.goal_timeout_s = 0.15 s"));
+
+  EXPECT_NE(run_cgsr({"config", "new"}).exit_code, 0) << "neither a webcam nor a recording";
+  EXPECT_THAT(run_cgsr({"config", "keys", "colour"}).errors, HasSubstr("no key contains 'colour'"));
+  write_text(file, "[motion]\nforward_limit_mps = 1\n");
+  EXPECT_THAT(run_cgsr({"config", "show", file}).errors,
+              HasSubstr("robot.toml:2: motion.forward_limit_mps is unknown; it is called max_forward_mps now"));
 }
 
 TEST(CommandLine, CheckLooksAtEverythingAndMovesNothing) {

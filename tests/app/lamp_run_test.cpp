@@ -13,7 +13,6 @@ namespace cgsr::app::testing {
 namespace {
 
 using ::testing::HasSubstr;
-using Changes = std::vector<std::pair<std::string, std::string>>;
 
 class LampRun : public ::testing::Test {
  protected:
@@ -33,33 +32,32 @@ class LampRun : public ::testing::Test {
                 "radius_m = 0.02, visible = false, lumens = 250.0, switch = \"probe lamp\" },\n"
                 "  { name = \"reading lamp\", position_m = [4.2, 1.4, 2.3], radius_m = 0.05, lumens = 700.0, "
                 "switch = \"reading lamp\" }]\n";
-    robot_ = read_text(CGSR_SOURCE_DIR "/config/robots/sim-home-lamp.toml");
-    change({{"\nfx_px = 601.8", "\nfx_px = 300.9"},
-            {"\nfy_px = 579.4", "\nfy_px = 289.7"},
-            {"\ncx_px = 319.5", "\ncx_px = 159.5"},
-            {"\ncy_px = 239.5", "\ncy_px = 119.5"},
-            {"\nwidth_px = 640", "\nwidth_px = 320"},
-            {"\nheight_px = 480", "\nheight_px = 240"},
-            {"\ncache = true", "\ncache = false"},
-            {"\nx_m = 2.2", "\nx_m = 4.6"},
-            {"\ny_m = 3.3", "\ny_m = 3.2"},
-            {"\nmin_locate_s = 3.0", "\nmin_locate_s = 0.3"},
-            {"\nmax_locate_s = 10.0", "\nmax_locate_s = 0.6"},
-            {"\nmax_probes_loss_s = 4.0", "\nmax_probes_loss_s = 0.4"},
-            {"../scenarios/home-lamp.toml", scratch_ / "scenario.toml"},
-            {"../models", CGSR_SOURCE_DIR "/config/models"}});
-    for (std::size_t at = 0; (at = robot_.find("\"../", at)) != std::string::npos;) {
-      robot_.replace(at, 4, "\"" CGSR_SOURCE_DIR "/config/");
-    }
+    robot_ = {{"camera.pinhole.fx_px", "300.9"},
+              {"camera.pinhole.fy_px", "289.7"},
+              {"camera.pinhole.cx_px", "159.5"},
+              {"camera.pinhole.cy_px", "119.5"},
+              {"sim.width_px", "320"},
+              {"sim.height_px", "240"},
+              {"sim.cache", "false"},
+              {"sim.scenario", quoted("scenario.toml")},
+              {"localization.start.x_m", "4.6"},
+              {"localization.start.y_m", "3.2"},
+              {"task.lamp.min_locate_s", "0.3"},
+              {"task.lamp.max_locate_s", "0.6"},
+              {"task.lamp.max_probes_loss_s", "0.4"}};
   }
 
-  void change(const Changes& changes) {
-    for (const auto& [from, to] : changes) replace(robot_, from, to);
+  void change(const Keys& changes) {
+    for (const auto& [key, value] : changes) robot_[key] = value;
+  }
+
+  void write_robot() {
+    write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-home-lamp.toml", robot_));
   }
 
   nlohmann::json run(const std::string& duration_s) {
     write_text(scratch_ / "scenario.toml", scenario_);
-    write_text(scratch_ / "robot.toml", robot_);
+    write_robot();
     const auto outcome = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--duration", duration_s, "--arm",
                                    "--json", scratch_ / "run.json"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
@@ -80,15 +78,14 @@ class LampRun : public ::testing::Test {
 
   ScratchFolder scratch_;
   std::string scenario_;
-  std::string robot_;
+  Keys robot_;
   std::string errors_;
 };
 
 using LampRunFault = LampRun;
 
 TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
-  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""},
-          {"room_lamp_line = \"\"", "room_lamp_line = \"living lamp\""}});
+  change({{"switches.probe_lamp_line", quoted("probe lamp")}, {"switches.room_lamp_line", quoted("living lamp")}});
   const auto summary = run("4.5");
   const auto& checks = summary["switches"]["checks"];
   ASSERT_EQ(checks.size(), 2U) << summary["switches"];
@@ -112,7 +109,7 @@ TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
 }
 
 TEST_F(LampRunFault, ALineThatDoesNotAnswerIsNamedAndItTracksWithoutAMask) {
-  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""}});
+  change({{"switches.probe_lamp_line", quoted("probe lamp")}});
   scenario_ += "line_event = [{ what = \"no_answer\", line = \"probe lamp\" }]\n";
   const auto summary = run("1.8");
   EXPECT_EQ(summary["switches"]["switchings"][0]["done"], false);
@@ -125,7 +122,7 @@ TEST_F(LampRunFault, ALineThatDoesNotAnswerIsNamedAndItTracksWithoutAMask) {
 }
 
 TEST_F(LampRunFault, ALineThatAnswersAndSwitchesNothingIsNamed) {
-  change({{"probe_lamp_line = \"\"", "probe_lamp_line = \"probe lamp\""}});
+  change({{"switches.probe_lamp_line", quoted("probe lamp")}});
   scenario_ += "line_event = [{ what = \"stuck\", line = \"probe lamp\" }]\n";
   const auto summary = run("1.8");
   EXPECT_EQ(summary["switches"]["checks"][0]["verdict"], "the lamp did not switch");
@@ -134,7 +131,7 @@ TEST_F(LampRunFault, ALineThatAnswersAndSwitchesNothingIsNamed) {
 
 // What the line switches is another lamp than the one whose shadows the probes show.
 TEST_F(LampRunFault, AShadowThatStaysIsNotTheRoomLampsAndItTracksWithoutAMask) {
-  change({{"room_lamp_line = \"\"", "room_lamp_line = \"reading lamp\""}});
+  change({{"switches.room_lamp_line", quoted("reading lamp")}});
   const auto summary = run("3.2");
   ASSERT_EQ(summary["switches"]["checks"].size(), 1U) << summary["task"];
   EXPECT_EQ(summary["switches"]["checks"][0]["outcome"], "failed") << summary["switches"];
@@ -144,9 +141,9 @@ TEST_F(LampRunFault, AShadowThatStaysIsNotTheRoomLampsAndItTracksWithoutAMask) {
 }
 
 TEST_F(LampRunFault, ALineThatTheRobotDoesNotHaveStopsTheStart) {
-  change({{"room_lamp_line = \"\"", "room_lamp_line = \"moon\""}});
+  change({{"switches.room_lamp_line", quoted("moon")}});
   write_text(scratch_ / "scenario.toml", scenario_);
-  write_text(scratch_ / "robot.toml", robot_);
+  write_robot();
   const auto outcome = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--duration", "1"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, HasSubstr("there is no line 'moon'"));
@@ -181,7 +178,7 @@ TEST_F(LampRunFault, ACalibrationOfAnotherCamera) {
   auto camera = read_text(CGSR_SOURCE_DIR "/config/maps/home/camera.yaml");
   replace(camera, "image_height: 480", "image_height: 360");
   write_text(scratch_ / "camera.yaml", camera);
-  change({{CGSR_SOURCE_DIR "/config/maps/home/camera.yaml", scratch_ / "camera.yaml"}});
+  change({{"localization.camera", quoted("camera.yaml")}});
   const auto summary = run("0.4");
   expect_no_mask(summary, "no probe board");
   ASSERT_EQ(summary["problems"].size(), 1U);
@@ -192,14 +189,14 @@ TEST_F(LampRunFault, ACalibrationOfAnotherLens) {
   auto camera = read_text(CGSR_SOURCE_DIR "/config/maps/home/camera.yaml");
   replace(camera, "data: [602", "data: [902");
   write_text(scratch_ / "camera.yaml", camera);
-  change({{CGSR_SOURCE_DIR "/config/maps/home/camera.yaml", scratch_ / "camera.yaml"}});
+  change({{"localization.camera", quoted("camera.yaml")}});
   const auto summary = run("0.4");
   expect_no_mask(summary, "no probe board");
   EXPECT_THAT(summary["problems"][0].get<std::string>(), HasSubstr("do not belong together"));
 }
 
 TEST_F(LampRunFault, ALampThatHangsBelowTheBoard) {
-  change({{"\nheight_m = 2.75", "\nheight_m = 0.8"}});
+  change({{"lamp.height_m", "0.8"}});
   const auto summary = run("0.4");
   expect_no_mask(summary, "no probe board");
   ASSERT_EQ(summary["problems"].size(), 1U);

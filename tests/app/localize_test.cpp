@@ -120,7 +120,7 @@ TEST_F(LocalizeFilm, FollowsWithARobotsFileAndThroughOpenGl) {
   write_text(file("robot.toml"),
              fmt::format("[mount]\nposition_m = [0.0, 0.0, 1.2]\nquaternion_wxyz = [{}, {}, {}, {}]\n", turn.w(),
                          turn.x(), turn.y(), turn.z()));
-  write_text(file("opengl.toml"), read_text(kFloor) + "\n[localizer]\nexpectation = \"osmesa\"\n");
+  write_text(file("opengl.toml"), read_text(kFloor) + "\n[localization.localizer]\nexpectation = \"osmesa\"\n");
   const auto run = localize({"--pose", file("pose.csv"), "--odometry", file("odometry.csv"), "--mount",
                              file("robot.toml"), "--config", file("opengl.toml"), "--csv", file("opengl.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
@@ -129,7 +129,7 @@ TEST_F(LocalizeFilm, FollowsWithARobotsFileAndThroughOpenGl) {
 
 TEST_F(LocalizeFilm, WithoutOpenGlsLibraryBesideTheProgramItSaysSo) {
   std::filesystem::copy_file(built_cgsr(), file("cgsr"));
-  write_text(file("without.toml"), "[localizer]\nexpectation = \"osmesa\"\n");
+  write_text(file("without.toml"), "[localization.localizer]\nexpectation = \"osmesa\"\n");
   const auto run = run_cgsr({"localize", "--map", file("room/map.obj"), "--camera", file("room/calibrated/camera.yaml"),
                              "--input", file("film"), "--pose", file("pose.csv"), "--config", file("without.toml")},
                             file("cgsr"));
@@ -163,7 +163,7 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
   bare->edges.clear();
   ASSERT_TRUE(world::write_compact(*bare, file("bare.cgsrmap")));
   write_text(file("first.csv"), fmt::format("{}0,{}\n", kColumns, pose_as_csv(true_pose(0))));
-  write_text(file("wrong.toml"), "[tracker]\nflor = true\n");
+  write_text(file("wrong.toml"), "[localization.tracker]\nflor = true\n");
 
   const std::string map = file("room/map.obj");
   const std::string camera = file("room/calibrated/camera.yaml");
@@ -193,7 +193,10 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
        "floor.toml: tracker.floor = true needs --mount: where the camera is on the robot"},
       {{"--pose", file("pose.csv"), "--mount", file("none.csv")}, map, camera, "none.csv: cannot be read"},
       {{"--pose", file("pose.csv"), "--mount", file("wrong.toml")}, map, camera, "wrong.toml: has no section [mount]"},
-      {{"--pose", file("pose.csv"), "--config", file("wrong.toml")}, map, camera, "wrong.toml:2: tracker.flor"},
+      {{"--pose", file("pose.csv"), "--config", file("wrong.toml")},
+       map,
+       camera,
+       "wrong.toml:2: localization.tracker.flor"},
       {{"--pose", file("pose.csv"), "--csv", "/nowhere/at/all.csv"},
        map,
        camera,

@@ -110,6 +110,16 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
+std::string quoted(const std::string& text) {
+  return '"' + text + '"';
+}
+
+std::string extended(const std::string& base, const Keys& keys) {
+  std::string text = "extends = " + quoted(base) + "\n";
+  for (const auto& [key, value] : keys) text += key + " = " + value + "\n";
+  return text;
+}
+
 void replace(std::string& text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   ASSERT_NE(at, std::string::npos) << from;

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,15 @@ std::string make_images(const std::filesystem::path& folder, int count);
 
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);
+
+/// Values of configuration keys, as TOML, by the path of the key.
+using Keys = std::map<std::string, std::string>;
+
+/// \return `text` as a TOML value.
+std::string quoted(const std::string& text);
+
+/// \return a robot's file that extends `base`, which is an absolute path, and sets some keys.
+std::string extended(const std::string& base, const Keys& keys);
 
 /// Writes `to` for the first `from`; without one the test has failed.
 void replace(std::string& text, const std::string& from, const std::string& to);

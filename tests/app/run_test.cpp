@@ -35,11 +35,9 @@ class RunReplay : public ::testing::Test {
 
   /// The shipped file, but live: images at their own rate, a thread per task.
   std::string live_config() {
-    auto text = read_text(shipped_);
-    text.replace(text.find("\"lock_step\""), 11, "\"live\"");
-    text.replace(text.find("\"as_fast_as_possible\""), 21, "\"own_rate\"");
-    text.replace(text.find("loop = false"), 12, "loop = true");
-    write_text(scratch_ / "live.toml", text);
+    write_text(scratch_ / "live.toml", extended(shipped_, {{"run.pace", quoted("live")},
+                                                           {"camera.replay.pace", quoted("own_rate")},
+                                                           {"camera.replay.loop", "true"}}));
     return scratch_ / "live.toml";
   }
 
@@ -68,9 +66,7 @@ TEST_F(RunReplay, ADryRunComputesEverythingAndCommandsNothing) {
 }
 
 TEST_F(RunReplay, WithoutArmingItStandsStill) {
-  auto text = read_text(shipped_);
-  text.replace(text.find("armed_at_start = true"), 21, "armed_at_start = false");
-  write_text(scratch_ / "disarmed.toml", text);
+  write_text(scratch_ / "disarmed.toml", extended(shipped_, {{"motion.armed_at_start", "false"}}));
   ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml")).exit_code, 0);
   EXPECT_EQ(summary()["motion"]["cycles_in_motion"], 0);
   ASSERT_EQ(run_cgsr(arguments(scratch_ / "disarmed.toml", {"--arm"})).exit_code, 0);
@@ -110,9 +106,7 @@ TEST_F(RunReplay, ALiveFollowerTakesAtMost120MegabytesAndNoOpenGl) {
 }
 
 TEST_F(RunReplay, ALostCameraIsAFailure) {
-  auto text = read_text(shipped_);
-  text.replace(text.find("loop = false"), 12, "loop = true");
-  write_text(scratch_ / "lock_step.toml", text);
+  write_text(scratch_ / "lock_step.toml", extended(shipped_, {{"camera.replay.loop", "true"}}));
   for (const auto& config : {live_config(), scratch_ / "lock_step.toml"}) {
     make_images(scratch_ / "images", 60);
     const auto csv = scratch_ / "run.csv";

@@ -21,19 +21,21 @@ using ::testing::Not;
 class RunSimulated : public ::testing::Test {
  protected:
   /// The shipped robot with images of half the size.
-  std::string small_robot(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
-    auto text = read_text(CGSR_SOURCE_DIR "/config/robots/sim-home.toml");
-    const std::vector<std::pair<std::string, std::string>> halves{
-        {"\nfx_px = 601.8", "\nfx_px = 300.9"},   {"\nfy_px = 579.4", "\nfy_px = 289.7"},
-        {"\ncx_px = 319.5", "\ncx_px = 159.5"},   {"\ncy_px = 239.5", "\ncy_px = 119.5"},
-        {"\nx_px = 236", "\nx_px = 118"},         {"\ny_px = 250", "\ny_px = 125"},
-        {"\nwidth_px = 67", "\nwidth_px = 33"},   {"\nheight_px = 128", "\nheight_px = 64"},
-        {"\nwidth_px = 640", "\nwidth_px = 320"}, {"\nheight_px = 480", "\nheight_px = 240"},
-        {"\ncache = true", "\ncache = false"},    {"\"../scenarios", "\"" CGSR_SOURCE_DIR "/config/scenarios"}};
-    for (const auto& [from, to] : halves) replace(text, from, to);
-    for (const auto& [from, to] : changes) replace(text, from, to);
+  std::string small_robot(const Keys& changes = {}) {
+    Keys keys = changes;
+    keys.insert({{"camera.pinhole.fx_px", "300.9"},
+                 {"camera.pinhole.fy_px", "289.7"},
+                 {"camera.pinhole.cx_px", "159.5"},
+                 {"camera.pinhole.cy_px", "119.5"},
+                 {"run.learn.x_px", "118"},
+                 {"run.learn.y_px", "125"},
+                 {"run.learn.width_px", "33"},
+                 {"run.learn.height_px", "64"},
+                 {"sim.width_px", "320"},
+                 {"sim.height_px", "240"},
+                 {"sim.cache", "false"}});
     const std::string file = scratch_ / ("robot" + std::to_string(++robots_) + ".toml");
-    write_text(file, text);
+    write_text(file, extended(CGSR_SOURCE_DIR "/config/robots/sim-home.toml", keys));
     return file;
   }
 
@@ -65,7 +67,7 @@ TEST_F(RunSimulated, FindsAndFollowsTheCartThroughChangingLight) {
 
 TEST_F(RunSimulated, TheSameBytesOnOneThreadAndOnTwoAndOthersForAnotherSeed) {
   const auto two = run(small_robot(), "3");
-  const auto one = run(small_robot({{"\nthreads = 2", "\nthreads = 1"}}), "3");
+  const auto one = run(small_robot({{"sim.threads", "1"}}), "3");
   EXPECT_EQ(one["inputs_sha256"], two["inputs_sha256"]);
   EXPECT_EQ(one["outputs_sha256"], two["outputs_sha256"]);
   EXPECT_EQ(one["truth"], two["truth"]);
@@ -78,9 +80,9 @@ TEST_F(RunSimulated, ARepeatedRunOutOfTheCacheIsTheSame) {
   setenv("XDG_CACHE_HOME", folder.c_str(), 1);
   const auto drawn = run(small_robot(), "3");
   EXPECT_FALSE(std::filesystem::exists(folder)) << "kept although nobody asked for it";
-  const auto fresh = run(small_robot({{"\ncache = false", "\ncache = true"}}), "3");
+  const auto fresh = run(small_robot({{"sim.cache", "true"}}), "3");
   const auto images = std::distance(std::filesystem::recursive_directory_iterator(folder), {});
-  const auto repeated = run(small_robot({{"\ncache = false", "\ncache = true"}}), "3");
+  const auto repeated = run(small_robot({{"sim.cache", "true"}}), "3");
   unsetenv("XDG_CACHE_HOME");
   EXPECT_GT(images, 80);
   for (const char* const what : {"inputs_sha256", "outputs_sha256", "truth"}) {
@@ -99,8 +101,7 @@ TEST_F(RunSimulated, TheProgramLinksNoRayTracer) {
 
 TEST_F(RunSimulated, APlugInThatIsMissingForeignOrOfAnotherVersionIsNamed) {
   const auto refusal = [&](const std::string& plug_in) {
-    const auto outcome =
-        run_cgsr({"run", "--config", small_robot({{"plug_in = \"\"", "plug_in = \"" + plug_in + "\""}})});
+    const auto outcome = run_cgsr({"run", "--config", small_robot({{"sim.plug_in", quoted(plug_in)}})});
     EXPECT_EQ(outcome.exit_code, 1);
     return outcome.errors;
   };
@@ -113,7 +114,7 @@ TEST_F(RunSimulated, CheckLooksAtTheHomeAndSaysWhatIsWrongWithIt) {
   const auto good = run_cgsr({"check", "--config", small_robot()});
   EXPECT_EQ(good.exit_code, 0) << good.errors;
   EXPECT_THAT(good.output, HasSubstr("320x240 at 30.00 Hz"));
-  const auto bad = run_cgsr({"check", "--config", small_robot({{"home-follow.toml", "nowhere.toml"}})});
+  const auto bad = run_cgsr({"check", "--config", small_robot({{"sim.scenario", quoted("nowhere.toml")}})});
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_THAT(bad.errors, HasSubstr("nowhere.toml"));
 }
@@ -122,7 +123,7 @@ TEST_F(RunSimulated, CheckLooksAtTheHomeAndSaysWhatIsWrongWithIt) {
 TEST_F(RunSimulated, RealTimeTakesItsTimeAndGivesTheSameBytes) {
   const auto fast = run(small_robot(), "1.5");
   const auto begin = std::chrono::steady_clock::now();
-  const auto paced = run(small_robot({{"pace = \"lock_step\"", "pace = \"real_time\""}}), "1.5");
+  const auto paced = run(small_robot({{"run.pace", quoted("real_time")}}), "1.5");
   EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(1350));
   EXPECT_EQ(paced["outputs_sha256"], fast["outputs_sha256"]);
 }
@@ -134,7 +135,7 @@ TEST_F(RunSimulated, TroubleByScriptStopsTheRobotAndIsNamed) {
     auto text = scenario + "\n" + trouble + "from_s = 3.0\n";
     replace(text, "\"../worlds", "\"" CGSR_SOURCE_DIR "/config/worlds");
     write_text(scratch_ / "scenario.toml", text);
-    return small_robot({{CGSR_SOURCE_DIR "/config/scenarios/home-follow.toml", scratch_ / "scenario.toml"}});
+    return small_robot({{"sim.scenario", quoted(scratch_ / "scenario.toml")}});
   };
   for (const auto& [trouble, latched] : {std::pair("[[base_event]]\nwhat = \"emergency_stop\"\n", "refuses motion"),
                                          std::pair("[[bus_event]]\nwhat = \"bus_off\"\n", "does not take commands"),
@@ -149,7 +150,7 @@ TEST_F(RunSimulated, TroubleByScriptStopsTheRobotAndIsNamed) {
 }
 
 TEST_F(RunSimulated, LiveThreadsAndASimulatedHomeDoNotGoTogether) {
-  const auto outcome = run_cgsr({"run", "--config", small_robot({{"\"lock_step\"", "\"live\""}})});
+  const auto outcome = run_cgsr({"run", "--config", small_robot({{"run.pace", quoted("live")}})});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, HasSubstr("lock_step or real_time"));
 }

@@ -17,27 +17,28 @@ class Audit {
   void number(std::string_view name, int value, Range<int> range, std::string_view unit, std::string_view meaning) {
     check_range(name, value, range.minimum, range.maximum);
     check_unit(name, unit);
-    check_name(name, meaning);
+    check_key(name, meaning);
   }
   void number(std::string_view name, double value, Range<double> range, std::string_view unit,
               std::string_view meaning) {
     check_range(name, value, range.minimum, range.maximum);
     check_unit(name, unit);
-    check_name(name, meaning);
+    check_key(name, meaning);
   }
   template <std::size_t kCount>
   void numbers(std::string_view name, const std::array<double, kCount>& values, Range<double> range,
                std::string_view unit, std::string_view meaning) {
     for (const double value : values) check_range(name, value, range.minimum, range.maximum);
     check_unit(name, unit);
-    check_name(name, meaning);
+    check_key(name, meaning);
   }
-  void flag(std::string_view name, bool, std::string_view meaning) { check_name(name, meaning); }
-  void text(std::string_view name, const std::string&, std::string_view meaning) { check_name(name, meaning); }
+  void flag(std::string_view name, bool, std::string_view meaning) { check_key(name, meaning); }
+  void text(std::string_view name, const std::string&, std::string_view meaning) { check_key(name, meaning); }
+  void path(std::string_view name, const std::string&, std::string_view meaning) { check_key(name, meaning); }
 
   template <class Enum, class Names>
   void choice(std::string_view name, Enum value, const Names& names, std::string_view meaning) {
-    check_name(name, meaning);
+    check_key(name, meaning);
     bool named = false;
     for (const Named<Enum>& word : names) named = named || word.value == value;
     if (!named) complain(name, "its default has no word");
@@ -89,6 +90,17 @@ class Audit {
       return;
     }
     complain(name, "has a unit without a suffix in tests/config/audit.h: " + std::string(unit));
+  }
+
+  // The meaning of a key is a sentence; bounds are called min_ and max_.
+  void check_key(std::string_view name, std::string_view meaning) {
+    check_name(name, meaning);
+    const bool sentence =
+        !meaning.empty() && meaning.front() >= 'A' && meaning.front() <= 'Z' && meaning.ends_with('.');
+    if (!meaning.empty() && !sentence) complain(name, "has a meaning that is no sentence: " + std::string(meaning));
+    for (const std::string_view word : {"_most", "_least", "least_", "most_", "largest_", "_limit", "_min_", "_max_"}) {
+      if (name.find(word) != name.npos) complain(name, "is a bound that is not called min_ or max_");
+    }
   }
 
   void check_name(std::string_view name, std::string_view meaning) {

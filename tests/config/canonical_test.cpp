@@ -13,7 +13,7 @@ namespace {
 std::string hash_of(std::string_view toml) {
   const auto document = Document::parse(toml, "robot.toml");
   if (!document) return document.error().message;
-  const auto sample = read<Sample>(*document, Missing::kTakesDefault);
+  const auto sample = read<Sample>(*document);
   return sample ? hash(*sample) : sample.error().message;
 }
 

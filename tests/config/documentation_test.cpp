@@ -19,8 +19,8 @@ TEST(Documentation, HasARowForEveryKey) {
   EXPECT_EQ(markdown<Sample>(), R"(
 | key | unit | range | default | meaning |
 |---|---|---|---|---|
-| `name` |  | text | "home" | what the robot is called \| for people |
-| `armed` |  | true, false | false | whether it starts armed |
+| `name` |  | text | "home" | What the robot is called \| for people. |
+| `armed` |  | true, false | false | Whether it starts armed. |
 
 ## `[area]`
 
@@ -28,8 +28,8 @@ Where it may go.
 
 | key | unit | range | default | meaning |
 |---|---|---|---|---|
-| `from_m` | m | -10..10 | -1 | left end |
-| `to_m` | m | -10..10 | 1 | right end |
+| `from_m` | m | -10..10 | -1 | The left end. |
+| `to_m` | m | -10..10 | 1 | The right end. |
 
 ## `[stage]`
 
@@ -41,9 +41,9 @@ Decoding.
 
 | key | unit | range | default | meaning |
 |---|---|---|---|---|
-| `every_frames` |  | 1..30 | 1 | runs in every n-th frame |
-| `budget_us` | µs | 100..33000 | 7000 | time it may take |
-| `on_overrun` |  | skip, stop_motion | "skip" | what happens when it takes longer |
+| `every_frames` |  | 1..30 | 1 | Runs in every n-th frame. |
+| `budget_us` | µs | 100..33000 | 7000 | The time it may take. |
+| `on_overrun` |  | skip, stop_motion | "skip" | What happens when it takes longer. |
 
 ## `[stage.track]`
 
@@ -51,9 +51,9 @@ Tracking.
 
 | key | unit | range | default | meaning |
 |---|---|---|---|---|
-| `every_frames` |  | 1..30 | 1 | runs in every n-th frame |
-| `budget_us` | µs | 100..33000 | 7000 | time it may take |
-| `on_overrun` |  | skip, stop_motion | "skip" | what happens when it takes longer |
+| `every_frames` |  | 1..30 | 1 | Runs in every n-th frame. |
+| `budget_us` | µs | 100..33000 | 7000 | The time it may take. |
+| `on_overrun` |  | skip, stop_motion | "skip" | What happens when it takes longer. |
 )");
 }
 
@@ -61,7 +61,7 @@ TEST(DocumentationGolden, PageIsWhatTheParametersSay) {
   std::ifstream file(CGSR_SOURCE_DIR "/docs/config.md");
   std::ostringstream page;
   page << file.rdbuf();
-  EXPECT_EQ(page.str(), robot_docs()) << "print it again: build/release/config_docs > docs/config.md";
+  EXPECT_EQ(page.str(), robot_docs()) << "print it again: build/release/cgsr config keys --output docs/config.md";
 }
 
 // Names, units, ranges and defaults of every parameter of the robot keep the rules.
@@ -76,8 +76,8 @@ struct Unsound {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("speed", self.speed, {0.0, 1.0}, "m/s", "");
-    visit.number("budget_ms", self.budget_ms, {1, 5}, "µs", "time");
-    visit.number("budget_ms", self.budget_ms, {5, 5}, "", "time");
+    visit.number("budget_ms", self.budget_ms, {1, 5}, "µs", "Time.");
+    visit.number("budget_ms", self.budget_ms, {5, 5}, "", "Time.");
   }
 };
 

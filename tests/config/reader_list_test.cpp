@@ -37,7 +37,7 @@ struct World {
 Result<World> read_world(std::string_view toml) {
   const auto document = Document::parse(toml, "world.toml");
   if (!document) return tl::unexpected(document.error());
-  return read<World>(*document, Missing::kTakesDefault);
+  return read<World>(*document);
 }
 
 std::string problems(std::string_view toml) {
@@ -68,12 +68,12 @@ TEST(ReaderList, NamesTheItemThatIsWrong) {
             "world.toml:4: lamp[1].position_m[1] = 11 is not in -10..10 m\n"
             "world.toml:5: lamp[1].lumen is unknown; did you mean lumens?");
   EXPECT_EQ(problems("[[lamp]]\nposition_m = [0, 1]\n"),
-            "world.toml:2: lamp[0].position_m is a list; a list of 3 numbers is wanted");
+            "world.toml:2: lamp[0].position_m is a list; expected a list of 3 numbers");
   EXPECT_EQ(problems("[[lamp]]\nposition_m = [0, nan, 1]\n"),
             "world.toml:2: lamp[0].position_m[1] = nan is not in -10..10 m");
   EXPECT_EQ(problems("[[lamp]]\nposition_m = [0, true, 1]\n"),
-            "world.toml:2: lamp[0].position_m[1] is true, true or false; a number is wanted");
-  EXPECT_EQ(problems("lamp = [1]\n"), "world.toml:1: lamp[0] is 1, a whole number; a section is wanted");
+            "world.toml:2: lamp[0].position_m[1] is true, true or false; expected a number");
+  EXPECT_EQ(problems("lamp = [1]\n"), "world.toml:1: lamp[0] is 1, a whole number; expected a section");
   EXPECT_EQ(problems("[[lamp]]\n"), "world.toml:1: [lamp[0]] the lamp lies in the floor");
 }
 

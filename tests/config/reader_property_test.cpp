@@ -1,5 +1,6 @@
 #include <array>
 #include <cctype>
+#include <filesystem>
 #include <random>
 #include <regex>
 #include <sstream>
@@ -94,7 +95,7 @@ bool is_clear(const std::string& message) {
 template <class Parameters>
 void survive(const std::string& valid, int trials, std::uint64_t seed) {
   const auto undamaged = Document::parse(valid, "robot.toml");
-  ASSERT_TRUE(undamaged && read<Parameters>(*undamaged, Missing::kTakesDefault)) << "what is damaged must be good";
+  ASSERT_TRUE(undamaged && read<Parameters>(*undamaged)) << "what is damaged must be good";
   Random random(seed);
   int refused = 0;
   for (int trial = 0; trial < trials; ++trial) {
@@ -102,8 +103,8 @@ void survive(const std::string& valid, int trials, std::uint64_t seed) {
     for (std::size_t blows = 1 + below(random, 4); blows > 0; --blows) text = damaged(text, random);
 
     const auto document = Document::parse(text, "robot.toml");
-    const auto parameters = document ? read<Parameters>(*document, Missing::kTakesDefault)
-                                     : Result<Parameters>(tl::unexpected(document.error()));
+    const auto parameters =
+        document ? read<Parameters>(*document) : Result<Parameters>(tl::unexpected(document.error()));
     if (parameters) {
       ASSERT_THAT(audit(*parameters), testing::IsEmpty()) << trial << '\n' << text;
     } else {
@@ -143,6 +144,11 @@ class Draw {
     value.clear();
     for (std::size_t length = below(random_, 8); length > 0; --length) value += kLetters[below(random_, 12)];
   }
+  void path(std::string_view name, std::string& value, std::string_view meaning) {
+    do {
+      text(name, value, meaning);
+    } while (value != std::filesystem::path(value).lexically_normal().string());  // as the reader leaves it
+  }
   template <class Enum, class Names>
   void choice(std::string_view, Enum& value, const Names& names, std::string_view) {
     value = names[below(random_, std::size(names))].value;
@@ -173,7 +179,7 @@ void come_back(int trials, std::uint64_t seed) {
     const std::string text = canonical(drawn);
     const auto document = Document::parse(text, "robot.toml");
     ASSERT_TRUE(document) << document.error().message << '\n' << text;
-    const auto parameters = read<Parameters>(*document, Missing::kIsAnError);
+    const auto parameters = read<Parameters>(*document);
     ASSERT_TRUE(parameters) << parameters.error().message << '\n' << text;
     ASSERT_EQ(canonical(*parameters), text) << trial;
   }

@@ -18,9 +18,9 @@ struct SampleStage {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("every_frames", self.every_frames, {1, 30}, "", "runs in every n-th frame");
-    visit.number("budget_us", self.budget_us, {100, 33000}, "µs", "time it may take");
-    visit.choice("on_overrun", self.on_overrun, kOverrunWords, "what happens when it takes longer");
+    visit.number("every_frames", self.every_frames, {1, 30}, "", "Runs in every n-th frame.");
+    visit.number("budget_us", self.budget_us, {100, 33000}, "µs", "The time it may take.");
+    visit.choice("on_overrun", self.on_overrun, kOverrunWords, "What happens when it takes longer.");
   }
 };
 
@@ -41,8 +41,8 @@ struct SampleArea {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("from_m", self.from_m, {-10.0, 10.0}, "m", "left end");
-    visit.number("to_m", self.to_m, {-10.0, 10.0}, "m", "right end");
+    visit.number("from_m", self.from_m, {-10.0, 10.0}, "m", "The left end.");
+    visit.number("to_m", self.to_m, {-10.0, 10.0}, "m", "The right end.");
   }
   [[nodiscard]] std::string inconsistency() const { return from_m < to_m ? "" : "from_m must be below to_m"; }
 };
@@ -56,8 +56,8 @@ struct Sample {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.text("name", self.name, "what the robot is called | for people");
-    visit.flag("armed", self.armed, "whether it starts armed");
+    visit.text("name", self.name, "What the robot is called | for people.");
+    visit.flag("armed", self.armed, "Whether it starts armed.");
     visit.section("area", self.area, "Where it may go");
     visit.section("stage", self.stage, "The schedule");
   }

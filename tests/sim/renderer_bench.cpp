@@ -20,7 +20,7 @@ using namespace cgsr;
 const sim::World* home() {
   static const auto world = []() -> std::unique_ptr<sim::World> {
     const std::filesystem::path file = std::filesystem::path(CGSR_SOURCE_DIR) / "config/worlds/home.toml";
-    const auto spec = config::read_file<sim::WorldSpec>(file, config::Missing::kTakesDefault);
+    const auto spec = config::read_file<sim::WorldSpec>(file);
     if (!spec) return nullptr;
     auto built = sim::build_world(*spec, file);
     return built ? std::make_unique<sim::World>(std::move(*built)) : nullptr;

@@ -88,7 +88,7 @@ void try_world(const std::string& toml, const fs::path& name, Outcomes& outcomes
     ++outcomes.unread;
     return;
   }
-  auto spec = config::read<WorldSpec>(*document, config::Missing::kTakesDefault);
+  auto spec = config::read<WorldSpec>(*document);
   if (!spec) {
     EXPECT_THAT(spec.error().message, HasSubstr(name.string()));
     ++outcomes.refused;
@@ -148,7 +148,7 @@ TEST(WorldFault, AbsurdlyManyThingsAreRefused) {
       "step_m = [0.01, 0, 0]\n[[robot]]\n";
   const auto document = config::Document::parse(toml, "many.toml");
   ASSERT_TRUE(document);
-  const auto spec = config::read<WorldSpec>(*document, config::Missing::kTakesDefault);
+  const auto spec = config::read<WorldSpec>(*document);
   ASSERT_TRUE(spec) << spec.error().message;
   const auto world = build_world(*spec, "many.toml");
   ASSERT_FALSE(world);

@@ -34,7 +34,7 @@ std::vector<std::string> world_names() {
 
 Result<World> load(const std::string& name) {
   const fs::path file = fs::path(CGSR_SOURCE_DIR) / "config/worlds" / (name + ".toml");
-  const auto spec = config::read_file<WorldSpec>(file, config::Missing::kTakesDefault);
+  const auto spec = config::read_file<WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   return build_world(*spec, file);
 }

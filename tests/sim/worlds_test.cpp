@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 Result<World> load(const std::string& name) {
   const std::filesystem::path file = std::filesystem::path(CGSR_SOURCE_DIR) / "config/worlds" / name;
-  const auto spec = config::read_file<WorldSpec>(file, config::Missing::kTakesDefault);
+  const auto spec = config::read_file<WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   return build_world(*spec, file);
 }
@@ -114,7 +114,7 @@ TEST(Worlds, TheirPageSaysWhatTheReaderReads) {
 std::string problems(const std::string& toml) {
   const auto document = config::Document::parse(toml, "bad.toml");
   if (!document) return document.error().message;
-  const auto spec = config::read<WorldSpec>(*document, config::Missing::kTakesDefault);
+  const auto spec = config::read<WorldSpec>(*document);
   if (!spec) return spec.error().message;
   const auto world = build_world(*spec, "bad.toml");
   return world ? "" : world.error().message;
@@ -152,7 +152,7 @@ TEST(WorldFault, EveryMistakeIsNamedWithItsLine) {
               HasSubstr("something else of that name"));
   EXPECT_THAT(problems("name = \"x\"\n"), HasSubstr("there is no [[robot]], and so no camera"));
   EXPECT_THAT(problems("name = \"x\"\n[[robot]]\nname = \"r\"\n[shape]\n"),
-              HasSubstr("a list of sections [[shape]] is wanted"));
+              HasSubstr("expected a list of sections [[shape]]"));
 }
 
 TEST(WorldFault, AllMistakesComeAtOnce) {
@@ -180,7 +180,7 @@ TEST(WorldFuzzProperty, DamagedFilesAreRefusedOrBuilt) {
       damaged.resize(static_cast<std::size_t>(random.uniform(0, static_cast<double>(damaged.size()))));
     const auto document = config::Document::parse(damaged, "damaged.toml");
     if (!document) continue;
-    const auto spec = config::read<WorldSpec>(*document, config::Missing::kTakesDefault);
+    const auto spec = config::read<WorldSpec>(*document);
     if (!spec) continue;
     WorldSpec nobody = *spec;
     nobody.person.clear();  // their faces take long to paint

@@ -129,7 +129,7 @@ std::string_view name_of(BallScene scene) {
 
 Result<std::unique_ptr<BallFilm>> BallFilm::make(std::uint64_t seed) {
   const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "home.toml";
-  auto spec = config::read_file<sim::WorldSpec>(file, config::Missing::kTakesDefault);
+  auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   std::erase_if(spec->robot, [](const sim::RobotSpec& robot) { return !robot.has_board; });
   if (spec->robot.empty()) return fail("home.toml: there is no robot with a probe board");

@@ -49,7 +49,7 @@ bool has_hue(const cv::Vec3b& hsv) {
 
 Result<std::unique_ptr<CorridorFilm>> CorridorFilm::make(std::uint64_t seed) {
   const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "corridor.toml";
-  auto spec = config::read_file<sim::WorldSpec>(file, config::Missing::kTakesDefault);
+  auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   vary(*spec, seed);
   auto world = sim::build_world(*spec, file);

@@ -72,7 +72,7 @@ Result<fs::path> find_scenario(const std::string& name) {
 Result<World> load_world(const std::string& name) {
   const auto file = find_world(name);
   if (!file) return tl::unexpected(file.error());
-  const auto spec = config::read_file<WorldSpec>(*file, config::Missing::kTakesDefault);
+  const auto spec = config::read_file<WorldSpec>(*file);
   if (!spec) return tl::unexpected(spec.error());
   return build_world(*spec, *file);
 }

@@ -98,12 +98,12 @@ std::string apply(const ScenarioSpec& spec, std::uint32_t seed, const std::files
 }  // namespace
 
 Result<Scenario> load_scenario(const std::filesystem::path& file, std::uint32_t seed) {
-  auto spec = config::read_file<ScenarioSpec>(file, config::Missing::kTakesDefault);
+  auto spec = config::read_file<ScenarioSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   if (spec->world.empty()) return fail(fmt::format("{}: world is empty: where does it happen?", file.string()));
   Scenario scenario;
   scenario.world_file = config::path_beside(file, spec->world);
-  auto world = config::read_file<WorldSpec>(scenario.world_file, config::Missing::kTakesDefault);
+  auto world = config::read_file<WorldSpec>(scenario.world_file);
   if (!world) return tl::unexpected(world.error());
   if (auto problems = apply(*spec, seed, file, *world); !problems.empty()) return fail(std::move(problems));
   scenario.spec = std::move(*spec);

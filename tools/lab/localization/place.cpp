@@ -15,7 +15,7 @@ namespace cgsr::lab {
 
 Result<std::unique_ptr<Place>> Place::make(const std::string& world, const Change& change) {
   const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / (world + ".toml");
-  auto spec = config::read_file<sim::WorldSpec>(file, config::Missing::kTakesDefault);
+  auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   spec->ball.clear();
   spec->object.clear();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pipeline/localization/localizer.h"
-#include "src/config/localization.h"
+#include "src/config/load.h"
 #include "tools/lab/localization/standpoints.h"
 #include "tools/lab/report.h"
 

@@ -22,13 +22,6 @@ namespace {
 
 constexpr int kRuns = 3;
 
-std::string with_all_replaced(std::string text, const std::string& what, const std::string& by) {
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
-}
-
 /// The shipped robot with another measurement of its home: the same file but for the folder of the calibration.
 Result<std::filesystem::path> robot_with_copy(const std::filesystem::path& shipped, const sim::Scene& scene, int robot,
                                               std::uint64_t seed, const std::filesystem::path& folder) {
@@ -36,15 +29,11 @@ Result<std::filesystem::path> robot_with_copy(const std::filesystem::path& shipp
   const sim::CalibrationErrors errors = sim::CalibrationErrors::chapter_4();
   auto written = sim::write_calibration(sim::calibrated_copy(scene, robot, errors, drawn), errors, drawn, folder);
   if (!written) return tl::unexpected(written.error());
-  std::ifstream in(shipped);
-  std::stringstream text;
-  text << in.rdbuf();
-  if (!in) return fail(fmt::format("{}: cannot be read", shipped.string()));
-  std::string robot_file = with_all_replaced(text.str(), "\"../maps/home/", "\"" + folder.string() + "/");
-  robot_file = with_all_replaced(robot_file, "\"../", "\"" + shipped.parent_path().parent_path().string() + "/");
   const auto path = folder / "robot-file.toml";
   std::ofstream out(path);
-  out << robot_file;
+  out << fmt::format(
+      "extends = \"{}\"\nlocalization = {{map = \"map.obj\", camera = \"camera.yaml\", mount = \"robot.toml\"}}\n",
+      std::filesystem::absolute(shipped).string());
   if (!out.flush()) return fail(fmt::format("{}: cannot be written", path.string()));
   return path;
 }

@@ -1,0 +1,65 @@
+#include "src/config/starter.h"
+
+namespace cgsr::config {
+
+std::string_view recording_starter() {
+  return R"(# A robot that follows an object in a recording. What this file does not name has its default:
+# `cgsr config show FILE` prints all that takes effect, `cgsr config keys WORD` explains keys.
+
+camera.replay.path = "recording.mp4"    # a video or a folder of images, relative to this file
+
+# The optics of the camera in pixels. These are typical of a webcam; `cgsr calibrate camera` measures them.
+[camera.pinhole]
+fx_px = 600.0
+fy_px = 600.0
+cx_px = 319.5
+cy_px = 239.5
+
+# The object to follow: this region of the first image is learned. Or name a model: run.model = "object.model"
+[run.learn]
+x_px = 280
+y_px = 180
+width_px = 80
+height_px = 120
+
+[follow]
+distance_m = 1.5        # the distance that the robot keeps from the object
+
+[motion]
+max_forward_mps = 0.3   # the base never drives faster
+armed_at_start = true   # only because a recording moves no wheels
+)";
+}
+
+std::string_view webcam_starter() {
+  return R"(# A robot that follows an object before a webcam. What this file does not name has its default:
+# `cgsr config show FILE` prints all that takes effect, `cgsr config keys WORD` explains keys.
+
+run.pace = "live"                       # a thread per task, in real time
+
+# No camera device is supported yet: a recording of the webcam is replayed at its own rate instead.
+[camera.replay]
+path = "webcam.mp4"                     # a video or a folder of images, relative to this file
+pace = "own_rate"
+width_px = 640
+height_px = 480
+
+# The optics of the camera in pixels. These are typical of a webcam; `cgsr calibrate camera` measures them.
+[camera.pinhole]
+fx_px = 600.0
+fy_px = 600.0
+
+# The object to follow: this region of the first image is learned. Or name a model: run.model = "object.model"
+[run.learn]
+x_px = 280
+y_px = 180
+width_px = 80
+height_px = 120
+
+[motion]
+max_forward_mps = 0.3                   # the base never drives faster
+armed_at_start = true                   # only because the base is an ideal one without wheels
+)";
+}
+
+}  // namespace cgsr::config
