@@ -15,6 +15,9 @@ find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(SYSTEMD REQUIRED IMPORTED_TARGET libsystemd)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)  # recordings: chunks
+find_package(ZLIB REQUIRED)                             # recordings: CRC-32
+find_package(fastcdr REQUIRED)                          # recordings: ROS 2's serialization of images
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)  # OpenGL without a window
 find_package(embree 3.13 REQUIRED)  # the simulator alone: ray tracing
 find_package(assimp 5.2 REQUIRED)   # meshes: maps, and scenes of the simulator

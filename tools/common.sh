@@ -13,6 +13,10 @@ install_packages() {
   mapfile -t wanted < <(grep -vE '^[[:space:]]*(#|$)' "$root/tools/packages.txt")
   mapfile -t missing < <(comm -23 <(printf '%s\n' "${wanted[@]}" | sort -u) \
     <(dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null | awk '$2 == "installed" {print $1}' | sort -u))
+  # Node.js from elsewhere brings its own npm, and Debian's package refuses to stand beside it.
+  if command -v npm >/dev/null; then
+    mapfile -t missing < <(printf '%s\n' "${missing[@]}" | grep -vx -e npm -e '')
+  fi
   [ "${#missing[@]}" -eq 0 ] && return 0
 
   local as_root=()
