@@ -93,6 +93,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
   command->add_option("--csv", options->run.csv, "write a row per image");
   command->add_option("--video", options->run.video, "write a video of what the robot saw and did");
+  command->add_option("--trace", options->run.trace, "write a trace of stages and control cycles (ui.perfetto.dev)");
+  command->add_option("--recording", options->run.recording,
+                      "write a recording in MCAP (Foxglove): outputs and images");
   command->add_option("--json", options->json, "write the summary for machines");
   command->add_option("--log-level", options->log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();

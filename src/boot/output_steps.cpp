@@ -5,6 +5,8 @@
 #include "src/sinks/digest_sink.h"
 #include "src/sinks/log_sink.h"
 #include "src/sinks/plan_picture.h"
+#include "src/sinks/recording_sink.h"
+#include "src/sinks/trace_sink.h"
 #include "src/sinks/video_sink.h"
 
 namespace cgsr::boot {
@@ -41,6 +43,16 @@ Result<void> open_outputs(RobotState& state) {
     auto csv = sinks::CsvSink::create(options.csv, truth);
     if (!csv) return tl::unexpected(csv.error());
     outputs.sinks.add(std::move(*csv));
+  }
+  if (!options.trace.empty()) {
+    auto trace = sinks::TraceSink::create(options.trace, schedule);
+    if (!trace) return tl::unexpected(trace.error());
+    outputs.sinks.add(std::move(*trace));
+  }
+  if (!options.recording.empty()) {
+    auto recording = sinks::RecordingSink::create(options.recording);
+    if (!recording) return tl::unexpected(recording.error());
+    outputs.sinks.add(std::move(*recording));
   }
   if (!options.video.empty()) {
     auto video = sinks::VideoSink::create(options.video, state.devices.mode, schedule, truth, plan_of(state));

@@ -30,6 +30,8 @@ struct RunOptions {
   double duration_s = 0.0;  ///< 0: until the images end or a signal comes.
   std::string csv;
   std::string video;
+  std::string trace;
+  std::string recording;
   sinks::FrameObserver observer = nullptr;  ///< for the lab; of a simulated robot in lock-step only.
 };
 

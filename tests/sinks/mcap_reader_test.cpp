@@ -89,7 +89,8 @@ TEST_F(McapReaderTest, FindsChannelsSchemasAndEveryMessage) {
 TEST_F(McapReaderTest, DecodesTheImagesFromCdr) {
   int images = 0;
   int jpegs = 0;
-  for (const json& message : read()["messages"]) {
+  const json recording = read();
+  for (const json& message : recording["messages"]) {
     const auto stamp = message["stamp_ns"].get<std::int64_t>();
     const json& body = message["message"];
     if (message["topic"] == "/track") continue;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "src/sinks/recorder.h"
+#include "src/sinks/sink.h"
+
+namespace cgsr::sinks {
+
+/// A recording of the run in MCAP, which Foxglove opens: the described outputs of the stages and of the motion loop as JSON, a topic each, and
+/// the images as JPEG. What finds no room is lost and counted.
+class RecordingSink final : public Sink {
+ public:
+  static Result<std::unique_ptr<RecordingSink>> create(const std::string& path);
+
+  Result<void> on_image(const ImageReport& report) override;
+  Result<void> on_control_cycle(const MotionStatus& status) override;
+  Result<void> finish() override { return recorder_->close(); }
+  void summarize(Summary& summary) override;
+
+ private:
+  explicit RecordingSink(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
+
+  template <class Output>
+  void post(std::size_t channel, MonoTime stamp, const Output& output);
+
+  std::unique_ptr<Recorder> recorder_;
+  std::string message_;
+};
+
+}  // namespace cgsr::sinks

@@ -1,0 +1,57 @@
+// The trace and the recording of a real run, read back.
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+#include "tests/sinks/mcap_check.h"
+#include "tests/sinks/trace_check.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+class RunOutputs : public ::testing::Test {
+ protected:
+  RunOutputs() {
+    const auto region = make_images(scratch_ / "images", 30);
+    EXPECT_EQ(
+        run_cgsr({"learn", "--input", scratch_ / "images", "--region", region, "--output", scratch_ / "m"}).exit_code,
+        0);
+    const auto outcome =
+        run_cgsr({"run", "--config", CGSR_SOURCE_DIR "/config/robots/video.toml", "--input", scratch_ / "images",
+                  "--model", scratch_ / "m", "--log-level", "warning", "--trace", scratch_ / "trace.json",
+                  "--recording", scratch_ / "run.mcap", "--json", scratch_ / "run.json"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(RunOutputs, TheTraceNestsAndHoldsEveryStageAndControlCycle) {
+  const auto trace = test::check_trace_file(scratch_ / "trace.json");
+  EXPECT_TRUE(trace.problems.empty()) << trace.problems.front();
+  EXPECT_EQ(trace.slices.at("frame"), 30);
+  for (const char* const stage : {"decode", "localize", "probes", "shade", "search", "track", "decide"}) {
+    EXPECT_EQ(trace.slices.at(stage), 30) << stage;
+  }
+  const auto run = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  EXPECT_EQ(trace.slices.at("control cycle"), run.at("motion").at("control_cycles").get<int>());
+}
+
+TEST_F(RunOutputs, TheRecordingCountsWhatItHolds) {
+  const auto run = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  const auto& recording = run.at("recording");
+  for (const char* const topic : {"/cgsr/objects", "/cgsr/decision", "/cgsr/pose", "/camera/image/compressed"}) {
+    EXPECT_EQ(recording.at(topic).at("written"), 30) << topic;
+    EXPECT_EQ(recording.at(topic).at("lost"), 0) << topic;
+  }
+  const auto contents = test::check_mcap(test::read_bytes(scratch_ / "run.mcap"));
+  EXPECT_TRUE(contents.problems.empty()) << contents.problems.front();
+  EXPECT_TRUE(contents.whole);
+  EXPECT_EQ(contents.schemas.at("/cgsr/objects"), "cgsr/objects");
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
