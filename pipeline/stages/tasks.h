@@ -17,7 +17,7 @@ inline constexpr Duration kMaxLampReportAge = seconds(0.5);
 class FollowTask final : public Task {
  public:
   /// \param camera  of the images that come: focal length and centre turn columns into bearings.
-  FollowTask(behavior::Follow follow, const geometry::Camera& camera) : follow_(std::move(follow)), camera_(camera) {}
+  FollowTask(const behavior::Follow& follow, const geometry::Camera& camera) : follow_(follow), camera_(camera) {}
   Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
 
  private:

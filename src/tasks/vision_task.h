@@ -17,14 +17,9 @@ struct VisionSurroundings {
 /// Runs the vision loop once per image: gathers what is known beside the image, and passes on what was decided.
 class VisionTask {
  public:
-  VisionTask(VisionLoop& loop, runtime::StageRunner& runner, VisionSurroundings surroundings, const Clock& clock,
+  VisionTask(VisionLoop& loop, runtime::StageRunner& runner, const VisionSurroundings& surroundings, const Clock& clock,
              Duration period, Links& links)
-      : loop_(loop),
-        runner_(runner),
-        surroundings_(std::move(surroundings)),
-        clock_(clock),
-        links_(links),
-        in_time_(period) {}
+      : loop_(loop), runner_(runner), surroundings_(surroundings), clock_(clock), links_(links), in_time_(period) {}
 
   /// Deals with the newest image. \return false when there was none.
   bool step();

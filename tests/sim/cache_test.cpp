@@ -50,11 +50,11 @@ struct Taken {
 class SimCache : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / "cgsr-cache-test" /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    fs::remove_all(folder_);
+    const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = fs::path(testing::TempDir()) / ("cgsr-cache-test-" + name) / "cache";
+    fs::remove_all(folder_.parent_path());
   }
-  void TearDown() override { fs::remove_all(folder_); }
+  void TearDown() override { fs::remove_all(folder_.parent_path()); }
 
   [[nodiscard]] CacheOptions options() const { return {folder_, 1'000'000'000U}; }
 
