@@ -53,6 +53,7 @@ class SimCache : public testing::Test {
     const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
     folder_ = fs::path(testing::TempDir()) / ("cgsr-cache-test-" + name) / "cache";
     fs::remove_all(folder_.parent_path());
+    fs::create_directories(folder_.parent_path());
   }
   void TearDown() override { fs::remove_all(folder_.parent_path()); }
 
