@@ -5,8 +5,14 @@
 namespace cgsr::boot {
 
 BootPlan::~BootPlan() {
-  for (auto step = done_.rbegin(); step != done_.rend(); ++step) {
-    if ((*step)->undo) (*step)->undo();
+  undo();
+}
+
+void BootPlan::undo() {
+  while (!done_.empty()) {
+    const BootStep* const step = done_.back();
+    done_.pop_back();
+    if (step->undo) step->undo();
   }
 }
 
@@ -18,7 +24,10 @@ bool BootPlan::ready(const BootStep& step) const {
 
 Result<void> BootPlan::run() {
   for (const BootStep& step : steps_) {
-    if (auto done = step.run(); !done) return done;
+    if (auto done = step.run(); !done) {
+      undo();
+      return done;
+    }
     done_.push_back(&step);
   }
   return {};

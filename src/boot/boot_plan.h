@@ -17,8 +17,8 @@ struct BootStep {
       {};  ///< called when the plan goes, last step first; only for a step that succeeded. May be empty.
 };
 
-/// A list of steps, walked from the first to the last. The robot's program stops at the first that fails; `cgsr check` walks on, past those
-/// whose needs are missing, and so finds every problem at once.
+/// A list of steps, walked from the first to the last. The robot's program stops at the first that fails and undoes what was done; `cgsr check`
+/// walks on, past those whose needs are missing, and so finds every problem at once. A step that fails leaves nothing behind by itself.
 ///
 /// Threads: one.
 class BootPlan {
@@ -31,10 +31,13 @@ class BootPlan {
   /// \param step  its needs stand before it in the list.
   void add(BootStep step) { steps_.push_back(std::move(step)); }
 
-  /// Walks until a step fails. \return its error; what succeeded before it stays until the plan goes.
+  /// Walks until a step fails. \return its error; the steps before it have then been undone, the last first.
   Result<void> run();
   /// Walks to the end. \return the errors of all steps that could be tried, in order.
   std::vector<Error> check();
+
+  /// Undoes what succeeded, the last step first. Idempotent; the destructor does it too.
+  void undo();
 
  private:
   [[nodiscard]] bool ready(const BootStep& step) const;

@@ -69,7 +69,9 @@ Result<void> open_base(RobotState& state) {
 Result<void> open_switches(RobotState& state) {
   state.devices.switches = make_switches(state);
   if (auto started = state.devices.switches->start(); !started) return started;
-  return tasks::check_lines(*state.devices.switches, state.lines());
+  auto checked = tasks::check_lines(*state.devices.switches, state.lines());
+  if (!checked) state.devices.switches->stop();
+  return checked;
 }
 
 }  // namespace cgsr::boot
