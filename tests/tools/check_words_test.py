@@ -1,0 +1,33 @@
+"""tools/check_words.py names each listed word with its place, and lets the standard terms and the glossary pass."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CHECK = pathlib.Path(__file__).resolve().parents[2] / "tools" / "check_words.py"
+
+
+class CheckWords(unittest.TestCase):
+    def run_on(self, path, text):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / path
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text(text)
+            return subprocess.run([sys.executable, CHECK, folder], capture_output=True, text=True)
+
+    def test_each_word_is_reported_with_its_line(self):
+        for word, term in [("FloorBelief", "planar pose estimate"), ("name_of(x)", "to_string()"), ("by_tip", "jacobian"),
+                           ("where the robot is is not known", "robot pose unknown"), ("KnownSelf", "localization setup")]:
+            result = self.run_on("src/a.cpp", f"\n{word}\n")
+            self.assertEqual(result.returncode, 1, word)
+            self.assertIn("src/a.cpp:2: ", result.stdout)
+            self.assertIn(term, result.stdout)
+
+    def test_standard_terms_and_the_glossary_pass(self):
+        self.assertEqual(self.run_on("src/a.cpp", "to_string(rename_offset); // robot pose unknown\n").stdout, "")
+        self.assertEqual(self.run_on("docs/glossary.md", "FloorBelief\n").returncode, 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
