@@ -21,6 +21,8 @@ TYPE = re.compile(r"(?:template <.*> )?(?:struct|class|enum class|enum|union|usi
 CONSTANT = re.compile(r"(?:static |inline |thread_local )*(?:constexpr|const|std::atomic).*?(\w+)(?:\[\w*\])*(?: = |\{|;)")
 TEST = re.compile(r"((?:TEST(?:_F|_P)?|INSTANTIATE_TEST_SUITE_P)\(\w+, \w+)")
 FUNCTION = re.compile(r"[\w:<>,&*\[\] ]*?(\w+)\(")
+ENUMERATORS = re.compile(r"enum (?!class)[^{;]*\{([^}]*)\}")  # an unscoped enumeration's are names of the namespace
+INNER_TYPE = re.compile(r"^ +(?:struct|class|enum class|enum) (\w+)[^;()]*\{", re.M)  # would shadow another file's type
 
 
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
@@ -55,6 +57,9 @@ def local_names(text):
             match = alias or TEST.match(line) or TYPE.match(line) or CONSTANT.match(line) or FUNCTION.match(line)
             if match:
                 found[match.group(1)] = line if alias else ""
+        for names in ENUMERATORS.findall(block):
+            found.update((name, "") for name in re.findall(r"\bk[A-Z]\w*", names))
+    found.update((name, "") for name in INNER_TYPE.findall(text))
     return found
 
 
