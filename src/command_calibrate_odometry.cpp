@@ -12,6 +12,7 @@
 #include "src/command.h"
 #include "src/input/pose_pairs.h"
 #include "src/input/robot_calibration.h"
+#include "src/option_checks.h"
 #include "src/output/picture.h"
 #include "src/output/text_file.h"
 
@@ -141,7 +142,7 @@ void add_calibrate_odometry(CLI::App& calibrate, int& exit_code) {
   odometry->add_option("--mount", options->mount,
                        "robot.toml with [mount], as cgsr calibrate mount writes it: --poses are the camera's");
   odometry->add_option("--stretch", options->stretch_m, "way in metres after which ends are compared")
-      ->check(CLI::Range(0.2, 100.0))
+      ->check(in_range(0.2, 100.0))
       ->capture_default_str();
   odometry->add_option("--output", options->output, "TOML to write, section [odometry]");
   odometry->add_option("--picture", options->picture, "picture of the ways");

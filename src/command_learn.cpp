@@ -11,6 +11,7 @@
 #include "src/command.h"
 #include "src/config/load.h"
 #include "src/input/image_input.h"
+#include "src/option_checks.h"
 #include "src/output/learn_preview.h"
 #include "src/output/picture.h"
 
@@ -80,8 +81,7 @@ void add_learn_command(CLI::App& app, int& exit_code) {
   auto* command = app.add_subcommand("learn", "learn an object's colours from one or several views (Alg. 3.1)");
   command->add_option("--input", options->input, "video, image folder or image")->required();
   command->add_option("--region", options->regions, "X,Y,W,H of the object in pixels; once per view")->required();
-  command->add_option("--at", options->at, "number of the image of each view, 0 is the first")
-      ->check(CLI::NonNegativeNumber);
+  command->add_option("--at", options->at, "number of the image of each view, 0 is the first")->check(whole_number());
   command->add_option("--output", options->output, "model file to write")->required();
   command->add_option("--preview", options->preview, "picture of what was learned; default: OUTPUT.png");
   command->add_option("--config", options->config, "a robot's file, or one with just the section [color]");

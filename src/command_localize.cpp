@@ -8,6 +8,7 @@
 #include "platform/stop.h"
 #include "src/command.h"
 #include "src/localize/localize_run.h"
+#include "src/option_checks.h"
 #include "src/output/progress.h"
 
 namespace cgsr::app {
@@ -74,7 +75,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
           "--units", options->units,
           "with --odometry: most looks at the map and rounds of matching for an image after the first; a search "
           "goes on over the images that follow; 0: all it asks for")
-      ->check(CLI::Range(0, 1'000'000))
+      ->check(in_range(0, 1'000'000))
       ->capture_default_str()
       ->needs(odometry);
   command->add_option("--csv", options->csv, "write a row for each image");

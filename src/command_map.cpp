@@ -18,6 +18,7 @@
 #include "src/command.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
+#include "src/option_checks.h"
 #include "src/output/map_view.h"
 #include "src/output/picture.h"
 
@@ -175,14 +176,14 @@ void add_load_options(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({"format", "z", "y"}))
       ->capture_default_str();
   command.add_option("--scale", options.load.scale, "metres per unit of the file")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(in_range(1e-6, 1e6))
       ->capture_default_str();
   command.add_option("--weld", options.load.weld_m, "corners closer than this are one, in metres")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(in_range(1e-6, 1.0))
       ->capture_default_str();
   command
       .add_option("--lies-on", options.load.lies_on_m, "what is closer than this to a surface lies on it, in metres")
-      ->check(CLI::Range(1e-3, 1.0))
+      ->check(in_range(1e-3, 1.0))
       ->capture_default_str();
 }
 

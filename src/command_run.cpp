@@ -15,6 +15,7 @@
 #include "src/boot/robot.h"
 #include "src/command.h"
 #include "src/config/load.h"
+#include "src/option_checks.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -86,9 +87,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--input", options->input, "images to replay instead of those that the file names");
   command->add_option("--model", options->model, "object to follow instead of the one that the file names");
   command->add_option("--seed", options->seed, "of the simulation instead of the one that the file names")
-      ->check(CLI::NonNegativeNumber);
-  command->add_option("--duration", options->run.duration_s, "end after that many seconds")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(whole_number());
+  command->add_option("--duration", options->run.duration_s, "end after that many seconds")->check(in_range(1e-3, 1e6));
   command->add_flag("--dry-run", options->run.dry_run, "compute and record, command nothing");
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
   command->add_option("--csv", options->run.csv, "write a row per image");

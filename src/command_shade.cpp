@@ -15,6 +15,7 @@
 #include "src/command.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
+#include "src/option_checks.h"
 #include "src/output/map_view.h"
 #include "src/output/picture.h"
 
@@ -93,13 +94,13 @@ void add_shade_command(CLI::App& app, int& exit_code) {
   command->add_option("--output", options->output, "the picture")->required();
   command->add_option("--image", options->image, "drawn over this instead of the map's surfaces");
   command->add_option("--width", options->shade.width, "columns of the masks")
-      ->check(CLI::Range(16, 1024))
+      ->check(in_range(16, 1024))
       ->capture_default_str();
   command->add_option("--height", options->shade.height, "rows of the masks")
-      ->check(CLI::Range(16, 1024))
+      ->check(in_range(16, 1024))
       ->capture_default_str();
   command->add_option("--widen", options->widen, "cells by which the masks grow")
-      ->check(CLI::Range(0, 100))
+      ->check(in_range(0, 100))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run_shade(*options); });
 }

@@ -9,6 +9,7 @@
 #include "platform/config/canonical.h"
 #include "platform/stop.h"
 #include "src/command.h"
+#include "src/option_checks.h"
 #include "src/output/progress.h"
 #include "src/output/text_file.h"
 #include "src/track/session.h"
@@ -85,6 +86,8 @@ int run_track(const TrackOptions& options) {
   const auto stopped = track_all(run, stop);
   if (!stopped) return report(stopped.error());
   if (auto finished = run.finish(); !finished) return report(finished.error());
+  if (auto checked = *stopped ? Result<void>{} : run.check_truth(options.truth); !checked)
+    return report(checked.error());
 
   const auto score = run.score(begun->box.empty() ? 0 : first + 1);
   if (auto written = write_json(options, run, score); !written) return report(written.error());
@@ -101,7 +104,7 @@ void add_track_command(CLI::App& app, int& exit_code) {
   command->add_option("--input", options->input, "video, image folder or image")->required();
   auto* learn = command->add_option("--learn", options->learn, "X,Y,W,H: learn what lies there, then track it");
   command->add_option("--learn-frame", options->learn_frame, "number of the image to learn from; tracking starts there")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number())
       ->needs(learn);
   auto* model = command->add_option("--model", options->model, "track with a model that cgsr learn wrote");
   learn->excludes(model);

@@ -37,6 +37,15 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   }
 }
 
+/// The beginning of a line as a message can show it.
+std::string start_of(std::string_view line) {
+  constexpr std::size_t kMaxShown = 40;
+  std::string shown(trimmed(line).substr(0, kMaxShown));
+  std::ranges::replace_if(
+      shown, [](char c) { return c < ' ' || c > '~'; }, '?');
+  return shown;
+}
+
 /// \return the box, unless it is none: NaN, infinite or without area.
 std::optional<Box> valid(const Box& box) {
   for (double value : {box.x, box.y, box.width, box.height}) {
@@ -45,7 +54,8 @@ std::optional<Box> valid(const Box& box) {
   return box.empty() ? std::nullopt : std::optional(box);
 }
 
-std::optional<Box> truth_of_line(std::string line) {
+/// \return the numbers of a line of a truth file; nothing when a word is no number.
+std::optional<std::vector<double>> truth_numbers(std::string line) {
   std::ranges::replace_if(
       line, [](char c) { return c == '\t' || c == ';'; }, ',');
   std::vector<double> numbers;
@@ -55,8 +65,12 @@ std::optional<Box> truth_of_line(std::string line) {
     if (!number) return std::nullopt;
     numbers.push_back(*number);
   }
-  if (numbers.size() < 4) return std::nullopt;
-  if (numbers.size() < 8) return valid({numbers[0], numbers[1], numbers[2], numbers[3]});
+  return numbers;
+}
+
+/// \param numbers  four, or an even number of at least eight.
+std::optional<Box> truth_box(const std::vector<double>& numbers) {
+  if (numbers.size() == 4) return valid({numbers[0], numbers[1], numbers[2], numbers[3]});
 
   double left = numbers[0], right = left, top = numbers[1], bottom = top;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -110,8 +124,28 @@ Result<Boxes> read_truth(const std::filesystem::path& path) {
   std::ifstream file(path);
   if (!file) return fail(fmt::format("cannot read the truth {}", path.string()));
   Boxes boxes;
-  for (std::string line; std::getline(file, line);) boxes.push_back(truth_of_line(line));
+  for (std::string line; std::getline(file, line);) {
+    const auto numbers = truth_numbers(line);
+    const std::size_t count = numbers ? numbers->size() : 1;
+    if (count != 0 && count != 4 && (count < 8 || count % 2 != 0)) {
+      return fail(
+          fmt::format("{}:{}: '{}' is no box; expected x,y,width,height or the corners x1,y1,x2,y2,... of a polygon, "
+                      "numbers only; nan,nan,nan,nan or a blank line where the object is not visible",
+                      path.string(), boxes.size() + 1, start_of(line)));
+    }
+    boxes.push_back(count == 0 ? std::nullopt : truth_box(*numbers));
+  }
+  if (file.bad()) return fail(fmt::format("cannot read the truth {}: expected a text file", path.string()));
+  if (boxes.empty()) return fail(fmt::format("{}: holds no box; expected a line for each image", path.string()));
   return boxes;
+}
+
+Result<void> check_length(const std::filesystem::path& path, const Boxes& truth, std::size_t images) {
+  const auto visible = [](const std::optional<Box>& box) { return box.has_value(); };
+  if (truth.size() >= images && std::none_of(truth.begin() + static_cast<std::ptrdiff_t>(images), truth.end(), visible))
+    return {};
+  return fail(fmt::format("{}: has {} lines for {} images; expected a line for each image", path.string(), truth.size(),
+                          images));
 }
 
 Result<Boxes> read_track(const std::filesystem::path& path) {

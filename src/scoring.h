@@ -43,11 +43,14 @@ std::vector<ImageScore> score_images(const Boxes& track, const Boxes& truth, int
 Score score(const Boxes& track, const Boxes& truth, int skip_first = 0);
 
 /// Reads a truth file: a line per image, x,y,width,height or a polygon x1,y1,x2,y2,… of at least four points (its upright
-/// bounding box counts), split by commas, semicolons, tabs or blanks. A line that is not numbers, holds a NaN or a box
-/// without area means: not visible.
+/// bounding box counts), split by commas, semicolons, tabs or blanks. A line that is blank, holds a NaN or a box without
+/// area means: not visible.
 ///
-/// \return the boxes, or the file that cannot be read.
+/// \return the boxes, or the file that cannot be read, the line that is anything else, or that there is no line.
 Result<Boxes> read_truth(const std::filesystem::path& path);
+
+/// \return an error unless the truth has a line for each of so many images. Further lines in which nothing is visible do no harm.
+Result<void> check_length(const std::filesystem::path& path, const Boxes& truth, std::size_t images);
 
 /// Reads a track CSV: frame,found,x,y,width,height[,…]. Rows whose frame is not a number (the header) are skipped, images
 /// without a row, with found <= 0, a NaN or a box without area count as not found.

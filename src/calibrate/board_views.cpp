@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "src/input/image_input.h"
+#include "src/option_checks.h"
 
 namespace cgsr::app {
 namespace {
@@ -40,10 +41,10 @@ bool is_new(const std::vector<BoardView>& views, const std::vector<cv::Point2f>&
 void add_board_options(CLI::App& command, BoardOptions& options) {
   command.add_option("--board", options.board, "the chessboard's inner corners, COLUMNSxROWS")->capture_default_str();
   command.add_option("--square", options.square_m, "side of a square in metres")
-      ->check(CLI::Range(1e-3, 1.0))
+      ->check(in_range(1e-3, 1.0))
       ->capture_default_str();
-  command.add_option("--every", options.every, "look at every n-th image only")->check(CLI::Range(1, 1000000));
-  command.add_option("--most", options.most, "views of the board to take at most")->check(CLI::Range(1, 1000));
+  command.add_option("--every", options.every, "look at every n-th image only")->check(in_range(1, 1000000));
+  command.add_option("--most", options.most, "views of the board to take at most")->check(in_range(1, 1000));
 }
 
 Result<BoardViews> find_views(const BoardOptions& options, const Board& board, bool only_new) {

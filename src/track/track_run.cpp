@@ -47,6 +47,10 @@ Result<void> TrackRun::finish() {
   return session_.video ? session_.video->close() : Result<void>{};
 }
 
+Result<void> TrackRun::check_truth(const std::string& path) const {
+  return session_.truth ? check_length(path, *session_.truth, frame_) : Result<void>{};
+}
+
 std::optional<Score> TrackRun::score(std::uint64_t first_answer) const {
   if (!session_.truth) return std::nullopt;
   const std::size_t seen = std::min(session_.truth->size(), boxes_.size());

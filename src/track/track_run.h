@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "pipeline/color/color_model.h"
 #include "pipeline/color/light_history.h"
@@ -33,6 +34,9 @@ class TrackRun {
   [[nodiscard]] std::uint64_t frame() const { return frame_; }
   [[nodiscard]] const config::Color& config() const { return session_.config; }
   [[nodiscard]] ImageInput& input() { return *session_.input; }
+
+  /// After the last image. \return an error when there is a truth, read from `path`, of another length.
+  [[nodiscard]] Result<void> check_truth(const std::string& path) const;
 
   /// Over the images from `first_answer` on that were looked at; nothing without a truth.
   [[nodiscard]] std::optional<Score> score(std::uint64_t first_answer) const;

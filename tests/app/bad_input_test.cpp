@@ -49,6 +49,41 @@ TEST_F(BadInputFault, NoFile) {
   expect_refused(track(scratch_ / "none.avi", region_), "none.avi");
 }
 
+TEST_F(BadInputFault, ATruthThatIsNoListOfBoxes) {
+  const auto folder = images(4);
+  const auto against = [&](const std::string& truth) {
+    return run_cgsr({"track", "--input", folder, "--learn", region_, "--truth", truth});
+  };
+  expect_refused(against(folder), "expected a text file");
+  expect_refused(against(folder + "/0000.png"), "0000.png:1: ");
+  const std::string line = "40,80,60,80\n";
+  write_text(scratch_ / "truth.txt", line + line + line);
+  expect_refused(against(scratch_ / "truth.txt"), "has 3 lines for 4 images");
+  write_text(scratch_ / "truth.txt", line + line + line + line + line);
+  expect_refused(against(scratch_ / "truth.txt"), "has 5 lines for 4 images");
+  write_text(scratch_ / "truth.txt", line + line + line + line + "\n");
+  EXPECT_EQ(against(scratch_ / "truth.txt").exit_code, 0);
+}
+
+TEST_F(BadInputFault, NumbersAndNamesOfTheCommandLine) {
+  const auto refused = [](const std::vector<std::string>& words, const std::string& message) {
+    const auto outcome = run_cgsr(words);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.errors;
+    EXPECT_THAT(outcome.errors, HasSubstr(message));
+  };
+  for (const std::string value : {"nan", "inf", "-inf", "0", "1e9", "ten", ""}) {
+    refused({"run", "--duration", value},
+            value.empty() ? "--duration" : "'" + value + "' is not a number in 0.001..1000000");
+  }
+  for (const std::string value : {"-1", "1.5", "nan", "99999999999999999999"}) {
+    refused({"run", "--seed", value}, "'" + value + "' is not a whole number from 0");
+    refused({"reproduce", "--seed", value, "--list"}, "'" + value + "' is not a whole number from 0");
+  }
+  refused({"track", "--inptu", "x"}, "there is no option '--inptu' (did you mean '--input'?)");
+  refused({"map", "info", "--scael=2", "x.obj"}, "there is no option '--scael' (did you mean '--scale'?)");
+  refused({"trak"}, "there is no command 'trak' (did you mean 'track'?)");
+}
+
 TEST_F(BadInputFault, NotAVideo) {
   write_text(scratch_ / "words.avi", "these are words, not pictures\n");
   expect_refused(track(scratch_ / "words.avi", region_), "words.avi");

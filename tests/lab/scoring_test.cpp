@@ -81,13 +81,33 @@ TEST(ReadTruth, TakesEverySeparatorPolygonsAndWhatIsNotVisible) {
   const auto truth = read_truth(written(scratch, "truth_separators.txt",
                                         "10,20,30,40\n10\t20\t30\t40\n10 20  30 40\n 10; 20; 30; 40 \r\n"
                                         "5,5,15,6,14,16,4,15\n"
-                                        "nan,nan,nan,nan\n5,5,0,5\n\nno box\n1,2,3\n"));
+                                        "nan,nan,nan,nan\n5,5,0,5\n\nnan nan nan nan\n 0 0 0 0\n"));
 
   ASSERT_TRUE(truth) << truth.error().message;
   ASSERT_EQ(truth->size(), 10U);
   for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ((*truth)[i], (Box{10, 20, 30, 40})) << i;
   EXPECT_EQ((*truth)[4], (Box{4, 5, 11, 11}));
   for (std::size_t i = 5; i < 10; ++i) EXPECT_FALSE((*truth)[i]) << i;
+}
+
+TEST(ReadTruth, RefusesWhatIsNoListOfBoxesAndNamesTheLine) {
+  const test::ScratchFolder scratch;
+  for (const std::string line :
+       {"no box", "1,2,3", "1,2,3,4,5", "1,2,3,4,5,6,7,8,9", "\xff\xd8\xff\xe0 JFIF", "frame,x,y,w"}) {
+    const auto truth = read_truth(written(scratch, "truth_wrong.txt", "10,20,30,40\n" + line + "\n10,20,30,40\n"));
+    ASSERT_FALSE(truth) << line;
+    EXPECT_NE(truth.error().message.find("truth_wrong.txt:2: '"), std::string::npos) << truth.error().message;
+  }
+  EXPECT_FALSE(read_truth(written(scratch, "truth_empty.txt", ""))) << "no line at all";
+  EXPECT_FALSE(read_truth(scratch / ".")) << "a folder";
+}
+
+TEST(ReadTruth, HasALineForEachImage) {
+  const Boxes truth{Box{1, 2, 3, 4}, std::nullopt, Box{1, 2, 3, 4}, std::nullopt};
+  EXPECT_FALSE(app::check_length("t", truth, 5));
+  EXPECT_TRUE(app::check_length("t", truth, 4));
+  EXPECT_TRUE(app::check_length("t", truth, 3)) << "a blank line at the end";
+  EXPECT_FALSE(app::check_length("t", truth, 2));
 }
 
 TEST(ReadTruth, NamesTheFileThatIsNotThere) {

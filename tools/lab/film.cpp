@@ -38,6 +38,9 @@ Result<Film> open_film(const std::filesystem::path& folder, std::optional<cv::Si
   if (files.empty()) return fail(fmt::format("there are no images in {}", (folder / "img").string()));
   auto truth = read_truth(folder / "groundtruth.txt");
   if (!truth) return tl::unexpected(truth.error());
+  if (auto checked = app::check_length(folder / "groundtruth.txt", *truth, files.size()); !checked) {
+    return tl::unexpected(checked.error());
+  }
   truth->resize(files.size());
   if (!truth->front()) {
     return fail(fmt::format("{}: the object is not visible in the first image, so there is nothing to learn from",

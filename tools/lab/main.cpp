@@ -12,6 +12,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "src/config/load.h"
+#include "src/option_checks.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/shaded_views.h"
@@ -168,8 +169,11 @@ int save_scenes(const FilmOptions& options) {
 void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_option("name", options.names, "tables to reproduce; none: all that are not by name only");
   app.add_flag("--list", options.list, "name what there is");
-  app.add_option("--seed", options.seed, "of everything that is drawn at random")->capture_default_str();
-  app.add_option("--trials", options.trials, "instead of each table's own number")->check(CLI::Range(1, 1000000));
+  app.add_option("--seed", options.seed, "of everything that is drawn at random")
+      ->check(cgsr::app::whole_number())
+      ->capture_default_str();
+  app.add_option("--trials", options.trials, "instead of each table's own number")
+      ->check(cgsr::app::in_range(1, 1000000));
   app.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   app.add_option("--data", options.data, "folder of recorded sequences")->envname("CGSR_DATA");
   app.add_option("--videos", options.videos,
@@ -183,7 +187,7 @@ void add_film_options(CLI::App& command, FilmOptions& options) {
   command.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
   command.add_option("--scene", options.scene, "seed of a generated film");
   command.add_option("--images", options.images, "how many, the one learned from included")
-      ->check(CLI::Range(1, 1000000));
+      ->check(cgsr::app::in_range(1, 1000000));
   command.add_flag("--absent", options.absent, "generated film: the object is in the first image alone");
 }
 
@@ -220,8 +224,8 @@ int main(int argc, char** argv) {
   std::uint64_t shade_seed = 1;
   int shade_views = 10;
   CLI::App* shade_command = app.add_subcommand("shade", "look for shaded regions in the home, for tools/count");
-  shade_command->add_option("--seed", shade_seed);
-  shade_command->add_option("--views", shade_views)->check(CLI::Range(1, 10000));
+  shade_command->add_option("--seed", shade_seed)->check(cgsr::app::whole_number());
+  shade_command->add_option("--views", shade_views)->check(cgsr::app::in_range(1, 10000));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {

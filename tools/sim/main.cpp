@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "src/option_checks.h"
 #include "tools/sim/export_world.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"
@@ -54,11 +55,13 @@ void add_render(CLI::App& command, RenderWords& words) {
   command
       .add_option("--robot", words.request.robot, "whose camera; without a place of its own the picture is its view")
       ->excludes(view);
-  command.add_option("--time", words.at_s, "when, seconds")->check(CLI::Range(0.0, 86400.0));
+  command.add_option("--time", words.at_s, "when, seconds")->check(cgsr::app::in_range(0.0, 86400.0));
   command.add_option("--on", words.request.on, "switch this line on")->allow_extra_args(false);
   command.add_option("--off", words.request.off, "switch this line off: room lamps are on, a robot's own are off")
       ->allow_extra_args(false);
-  command.add_option("--seed", words.request.seed, "of the noise")->capture_default_str();
+  command.add_option("--seed", words.request.seed, "of the noise")
+      ->check(cgsr::app::whole_number())
+      ->capture_default_str();
   command.add_option("--size", words.size, "WIDTHxHEIGHT; the camera's 640x480 when not given");
   command.add_flag("--no-noise", words.no_noise, "without the sensor's noise");
   command.add_flag("--no-lens", words.no_lens, "without the lens's distortion");
@@ -66,7 +69,7 @@ void add_render(CLI::App& command, RenderWords& words) {
       ->check(CLI::IsMember({1, 4, 16}))
       ->capture_default_str();
   command.add_option("--threads", words.request.threads, "the picture does not depend on it")
-      ->check(CLI::Range(1, 64))
+      ->check(cgsr::app::in_range(1, 64))
       ->capture_default_str();
   command.add_option("--output", words.files.output, "the picture, .png")->required();
   command.add_option("--truth", words.files.truth_folder,
@@ -78,7 +81,9 @@ void add_export(CLI::App& command, ExportWords& words) {
   add_world(command, words.world);
   command.add_option("--output", words.folder, "folder")->required();
   command.add_option("--robot", words.request.robot, "whose camera, mount and probes; the first one's when not given");
-  command.add_option("--seed", words.request.seed, "of the errors")->capture_default_str();
+  command.add_option("--seed", words.request.seed, "of the errors")
+      ->check(cgsr::app::whole_number())
+      ->capture_default_str();
   command.add_option("--errors", words.request.error_factor, "so many times the errors that are usual; 0: none")
       ->capture_default_str();
 }
@@ -92,12 +97,13 @@ void add_run(CLI::App& command, RunWords& words) {
   command.add_option("--scenario", words.scenario, "a name in config/scenarios, such as home-follow, or a file")
       ->required();
   command.add_option("--seed", words.run.seed, "of noise, slip and how far actors go astray")
-      ->check(CLI::Range(0, 1000000000))
+      ->check(cgsr::app::in_range(0, 1000000000))
       ->capture_default_str();
-  command.add_option("--duration", words.run.duration_s, "end after that many seconds")->check(CLI::Range(1e-3, 1e6));
+  command.add_option("--duration", words.run.duration_s, "end after that many seconds")
+      ->check(cgsr::app::in_range(1e-3, 1e6));
   command.add_option("--size", words.size, "WIDTHxHEIGHT; 640x480 when not given");
   command.add_option("--threads", words.run.threads, "the images do not depend on it")
-      ->check(CLI::Range(1, 64))
+      ->check(cgsr::app::in_range(1, 64))
       ->capture_default_str();
   command.add_option("--video", words.run.video, "the camera's images beside a plan of the home: .mkv, .avi or .mp4");
   command.add_option("--truth", words.run.truth, "what is really there, a row an image: .csv");
