@@ -5,6 +5,8 @@ set(CGSR_SANITIZE "" CACHE STRING "empty, or a value for -fsanitize (address,und
 
 # Never contract a*b+c: the same bytes on every machine matter more than the last percent.
 add_compile_options(-march=${CGSR_ARCH} -ffp-contract=off)
+# Eigen's square root of four floats would begin with RSQRTPS, whose last bits are each manufacturer's own.
+add_compile_definitions(EIGEN_FAST_MATH=0)
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wold-style-cast
                     -Werror)
 if(CGSR_SANITIZE)

@@ -136,6 +136,33 @@ void Tracer::nearest(const int* valid, RTCRayHit8& rays, bool coherent) const {
   rtcInitIntersectContext(&context);
   context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcIntersect8(valid, top_, &context, &rays);
+  for (int lane = 0; lane < kPacket; ++lane) {
+    if (valid[lane] != 0 && rays.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID) measure(rays, lane);
+  }
+}
+
+// Möller and Trumbore's intersection ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), in double.
+void Tracer::measure(RTCRayHit8& rays, int lane) const {
+  const Met hit = met(rays, lane);
+  const Mesh& mesh = scene_->parts[static_cast<std::size_t>(hit.part)].mesh;
+  const Placement& X = placement(hit.part);
+  const auto corner = [&](int i) -> Eigen::Vector3d {
+    const auto at = static_cast<std::size_t>(i);
+    return X.R.cast<double>() * mesh.position_m[mesh.triangles[hit.triangle].corner[at]].cast<double>() +
+           X.p.cast<double>();
+  };
+  const Eigen::Vector3d a = corner(0);
+  const Eigen::Vector3d ab = corner(1) - a;
+  const Eigen::Vector3d ac = corner(2) - a;
+  const Eigen::Vector3d direction(rays.ray.dir_x[lane], rays.ray.dir_y[lane], rays.ray.dir_z[lane]);
+  const Eigen::Vector3d from_a = Eigen::Vector3d(rays.ray.org_x[lane], rays.ray.org_y[lane], rays.ray.org_z[lane]) - a;
+  const Eigen::Vector3d across = direction.cross(ac);
+  const double determinant = ab.dot(across);
+  if (determinant == 0.0) return;  // seen exactly edge on: Embree says where
+  const Eigen::Vector3d q = from_a.cross(ab);
+  rays.hit.u[lane] = static_cast<float>(from_a.dot(across) / determinant);
+  rays.hit.v[lane] = static_cast<float>(direction.dot(q) / determinant);
+  rays.ray.tfar[lane] = static_cast<float>(ac.dot(q) / determinant);
 }
 
 void Tracer::blocked(const int* valid, RTCRay8& rays, bool coherent) const {

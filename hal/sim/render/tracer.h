@@ -54,6 +54,7 @@ class Tracer {
 
   /// Finds the nearest surface for every ray whose `valid` is -1 (0: left alone). Embree's pitfall: with packets of 16 the coherent
   /// flag never returned from the occlusion call; packets of 8 are the only ones used here.
+  /// Embree says which triangle; where on it is computed here: Embree's reciprocals begin with RCPPS, whose last bits are each manufacturer's own.
   void nearest(const int* valid, RTCRayHit8& rays, bool coherent) const;
 
   /// Sets tfar to -inf for every ray that something blocks.
@@ -73,6 +74,8 @@ class Tracer {
   explicit Tracer(const Scene& scene);
   Result<void> build();
   RTCGeometry geometry_of(const Part& part);
+  /// Distance and barycentric coordinates of what a lane has hit.
+  void measure(RTCRayHit8& rays, int lane) const;
 
   const Scene* scene_;
   RTCDevice device_ = nullptr;
