@@ -34,7 +34,7 @@ $(tail -n 5 "$log")"
 }
 
 # build PRESET [TARGET…]: configures once, then builds. Quiet when there is nothing to do. A folder that is not there yet is set up to be built
-# from nothing, with CGSR_UNITY=ON in groups of files; who works on the code and recompiles single files runs `cmake --preset PRESET` first.
+# from nothing, groups of files as one; who works on the code and recompiles single files runs `cmake --preset PRESET` first, or sets CGSR_UNITY=OFF.
 build() {
   local preset="$1" start precompile=OFF
   shift
@@ -42,7 +42,7 @@ build() {
   [ "$preset" = release ] && precompile=ON  # takes longer than it saves for the few programs that run under a sanitizer
   if [ ! -f "$root/build/$preset/build.ninja" ]; then
     say "configuring build/$preset"
-    cmake -S "$root" --preset "$preset" -DCGSR_UNITY="${CGSR_UNITY:-OFF}" -DCGSR_PRECOMPILE="$precompile" >"$root/build-$preset.log" 2>&1 ||
+    cmake -S "$root" --preset "$preset" -DCGSR_UNITY="${CGSR_UNITY:-ON}" -DCGSR_PRECOMPILE="$precompile" >"$root/build-$preset.log" 2>&1 ||
       { cat "$root/build-$preset.log" >&2; rm -f "$root/build-$preset.log"; die "cmake failed"; }
     rm -f "$root/build-$preset.log"
   fi
