@@ -12,6 +12,7 @@
 #include "platform/config/canonical.h"
 #include "platform/config/reader.h"
 #include "tests/config/sample.h"
+#include "tests/support/scratch_folder.h"
 
 namespace cgsr::config {
 namespace {
@@ -33,7 +34,6 @@ struct Files {
 class LayersTest : public testing::Test {
  protected:
   LayersTest() { std::filesystem::create_directories(folder_ / "base"); }
-  ~LayersTest() override { std::filesystem::remove_all(folder_); }
 
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
@@ -52,7 +52,7 @@ class LayersTest : public testing::Test {
     return files ? "" : files.error().message;
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "cgsr_layers_test";
+  test::ScratchFolder folder_;
 };
 
 TEST_F(LayersTest, TheFirstFileThatNamesAKeyCounts) {

@@ -17,6 +17,7 @@
 #include "src/config/listing.h"
 #include "src/config/load.h"
 #include "src/config/starter.h"
+#include "tests/support/scratch_folder.h"
 
 namespace cgsr::config {
 namespace {
@@ -60,7 +61,8 @@ TEST(ShippedRobots, NameOnlyWhatDiffersFromTheDefaults) {
 
 // What takes effect does not depend on where the checkout lies or how the file is named.
 TEST(ShippedRobots, HaveTheSameHashElsewhere) {
-  const std::filesystem::path elsewhere = std::filesystem::path(testing::TempDir()) / "cgsr_shipped_test/a/b";
+  const test::ScratchFolder folder;
+  const std::filesystem::path elsewhere = folder / "a/b";
   std::filesystem::create_directories(elsewhere);
   std::filesystem::copy(CGSR_SOURCE_DIR "/config/robots", elsewhere / "robots");
   for (const auto& file : robot_files()) {
@@ -70,7 +72,6 @@ TEST(ShippedRobots, HaveTheSameHashElsewhere) {
     EXPECT_EQ(hash(*there), hash(*here)) << file;
     EXPECT_EQ(canonical(*here).find(CGSR_SOURCE_DIR), std::string::npos) << file;
   }
-  std::filesystem::remove_all(elsewhere.parent_path().parent_path());
 }
 
 TEST(Starter, ARobotForARecordingNeedsTwelveLines) {
@@ -88,10 +89,10 @@ TEST(Starter, ARobotForARecordingNeedsTwelveLines) {
       "[follow]\n"
       "max_forward_mps = 0.2\n";
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 12);
-  const auto file = std::filesystem::path(testing::TempDir()) / "cgsr_twelve_lines.toml";
+  const test::ScratchFolder folder;
+  const auto file = folder / "twelve_lines.toml";
   std::ofstream(file) << text;
   const auto robot = load_robot(file);
-  std::filesystem::remove(file);
   ASSERT_TRUE(robot) << robot.error().message;
   EXPECT_EQ(robot->camera.replay.path, (file.parent_path() / "walk.mp4").string());
   EXPECT_EQ(robot->provenance.origins.size(), 9u);
@@ -100,10 +101,10 @@ TEST(Starter, ARobotForARecordingNeedsTwelveLines) {
 TEST(Starter, WhatIsWrittenIsAShortGoodFile) {
   for (const std::string_view text : {recording_starter(), webcam_starter()}) {
     EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 40);
-    const auto file = std::filesystem::path(testing::TempDir()) / "cgsr_starter.toml";
+    const test::ScratchFolder folder;
+    const auto file = folder / "starter.toml";
     std::ofstream(file) << text;
     const auto robot = load_robot(file);
-    std::filesystem::remove(file);
     ASSERT_TRUE(robot) << robot.error().message;
     EXPECT_FALSE(robot->run.learn.empty());
     EXPECT_FALSE(robot->camera.replay.path.empty());
