@@ -55,23 +55,100 @@ LampView::LampView(const world::Map& map, const ShadeParameters& parameters)
 }
 
 void LampView::place(const Eigen::Vector3f& p_WL) {
+  begin(p_WL);
+  while (!go_on(std::numeric_limits<std::size_t>::max())) {
+  }
+}
+
+void LampView::begin(const Eigen::Vector3f& p_WL) {
   p_WL_ = p_WL;
   full_ = false;
-  placed_ = p_WL.allFinite();
-  std::fill(covered_.begin(), covered_.end(), 0.0F);
-  std::fill_n(entries_.begin(), covered_.size(), Entry{});
+  placed_ = false;
   entries_used_ = covered_.size();
-  if (!placed_) return;
-  for (std::uint32_t name = 0; name < map_.surfaces.size(); ++name) {
-    const world::Surface& surface = map_.surfaces[name];
-    for (std::uint32_t t = 0; t < surface.triangle_count; ++t) see(surface.first_triangle + t, name);
+  enter_phase(Phase::kClear);
+}
+
+bool LampView::go_on(std::size_t work) {
+  std::size_t done = 0;
+  while (done < work && progress_.phase != Phase::kDone) {
+    switch (progress_.phase) {
+      case Phase::kClear:
+        done += clear(work - done);
+        break;
+      case Phase::kSee:
+        done += see_surface();
+        break;
+      case Phase::kCover:
+      case Phase::kEnter:
+        done += lay_triangle(work - done);
+        break;
+      case Phase::kDone:
+        break;
+    }
   }
-  for (std::size_t face = 0; face < kFaces; ++face) {
-    for (std::uint32_t t = 0; t < map_.triangles.size(); ++t) cover(face, t);
+  return progress_.phase == Phase::kDone;
+}
+
+std::size_t LampView::clear(std::size_t work) {
+  constexpr std::size_t kCellsPerWork = 8;  // it takes that much less to clear a cell than to visit it
+  const std::size_t count =
+      std::min(covered_.size() - progress_.next, work < covered_.size() ? kCellsPerWork * work : covered_.size());
+  std::fill_n(covered_.begin() + static_cast<std::ptrdiff_t>(progress_.next), count, 0.0F);
+  std::fill_n(entries_.begin() + static_cast<std::ptrdiff_t>(progress_.next), count, Entry{});
+  progress_.next += count;
+  if (progress_.next == covered_.size()) enter_phase(p_WL_.allFinite() ? Phase::kSee : Phase::kDone);
+  return count / kCellsPerWork + 1;
+}
+
+std::size_t LampView::see_surface() {
+  constexpr std::size_t kWorkPerTriangle = 12;
+  if (progress_.next == map_.surfaces.size()) {
+    enter_phase(Phase::kCover);
+    return 0;
   }
-  for (std::size_t face = 0; face < kFaces; ++face) {
-    for (std::uint32_t t = 0; t < map_.triangles.size(); ++t) enter(face, t);
+  const world::Surface& surface = map_.surfaces[progress_.next];
+  for (std::uint32_t t = 0; t < surface.triangle_count; ++t) {
+    see(surface.first_triangle + t, static_cast<std::uint32_t>(progress_.next));
   }
+  ++progress_.next;
+  return kWorkPerTriangle * surface.triangle_count + 1;
+}
+
+/// Lays the present triangle over the rows of the present face, as far as the work goes.
+std::size_t LampView::lay_triangle(std::size_t work) {
+  constexpr std::size_t kWorkPerTriangle = 6;
+  constexpr std::size_t kWorkPerRow = 6;
+  if (progress_.next == map_.triangles.size()) {
+    if (progress_.face + 1 < kFaces) {
+      progress_ = {.phase = progress_.phase, .face = progress_.face + 1};
+    } else if (progress_.phase == Phase::kCover) {
+      enter_phase(Phase::kEnter);
+    } else {
+      enter_phase(Phase::kDone);
+      placed_ = true;
+    }
+    return 0;
+  }
+  const auto triangle = static_cast<std::uint32_t>(progress_.next);
+  std::size_t done = kWorkPerTriangle;
+  Outline o;
+  if (outline(progress_.face, triangle, o)) {
+    const bool covers = progress_.phase == Phase::kCover;
+    const auto limit = static_cast<float>(cells_);
+    const int first = static_cast<int>(covers ? std::ceil(std::clamp(o.top, 0.0F, limit))
+                                              : std::floor(std::clamp(o.top - kWider, 0.0F, limit - 1.0F)));
+    const int end = static_cast<int>(covers ? std::floor(std::clamp(o.bottom, 0.0F, limit))
+                                            : std::floor(std::clamp(o.bottom + kWider, 0.0F, limit - 1.0F)) + 1.0F);
+    int y = std::max(first, progress_.row);
+    for (; y < end && done < work; ++y) {
+      done += kWorkPerRow + (covers ? cover_row(progress_.face, o, y) : enter_row(progress_.face, triangle, o, y));
+    }
+    progress_.row = y;
+    if (y < end) return done;
+  }
+  ++progress_.next;
+  progress_.row = 0;
+  return done;
 }
 
 void LampView::see(std::uint32_t triangle, std::uint32_t surface) {
@@ -143,77 +220,68 @@ bool LampView::outline(std::size_t face, std::uint32_t triangle, Outline& out) c
   return true;
 }
 
-/// Notes the cells that a triangle covers wholly, and its farthest depth in each: nothing behind that throws a shadow of its own there.
-void LampView::cover(std::size_t face, std::uint32_t triangle) {
-  Outline o;
-  if (!outline(face, triangle, o)) return;
+/// Notes the cells of a row that a triangle covers wholly, and its farthest depth in each: nothing behind that throws a shadow of its own there.
+/// \return how many.
+std::size_t LampView::cover_row(std::size_t face, const Outline& o, int y) {
   const auto limit = static_cast<float>(cells_);
   const float farthest = 0.5F * (std::abs(o.du) + std::abs(o.dv));
-  const int first = static_cast<int>(std::ceil(std::clamp(o.top, 0.0F, limit)));
-  const int last = static_cast<int>(std::floor(std::clamp(o.bottom, 0.0F, limit)));
-  for (int y = first; y < last; ++y) {
-    float left = 0.0F;
-    float right = 0.0F;
-    float left_below = 0.0F;
-    float right_below = 0.0F;
-    if (!o.across(static_cast<float>(y), left, right)) continue;
-    if (!o.across(static_cast<float>(y + 1), left_below, right_below)) continue;
-    const int begin = static_cast<int>(std::ceil(std::clamp(std::max(left, left_below) + kWider, 0.0F, limit)));
-    const int end = static_cast<int>(std::floor(std::clamp(std::min(right, right_below) - kWider, 0.0F, limit)));
-    float* row = &covered_[(face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) *
-                           static_cast<std::size_t>(cells_)];
-    const float start = o.at_origin + o.dv * (static_cast<float>(y) + 0.5F) + o.du * 0.5F - farthest;
-    for (int x = begin; x < end; ++x) row[x] = std::max(row[x], start + o.du * static_cast<float>(x));
-  }
+  float left = 0.0F;
+  float right = 0.0F;
+  float left_below = 0.0F;
+  float right_below = 0.0F;
+  if (!o.across(static_cast<float>(y), left, right)) return 0;
+  if (!o.across(static_cast<float>(y + 1), left_below, right_below)) return 0;
+  const int begin = static_cast<int>(std::ceil(std::clamp(std::max(left, left_below) + kWider, 0.0F, limit)));
+  const int end = static_cast<int>(std::floor(std::clamp(std::min(right, right_below) - kWider, 0.0F, limit)));
+  float* row = &covered_[(face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) *
+                         static_cast<std::size_t>(cells_)];
+  const float start = o.at_origin + o.dv * (static_cast<float>(y) + 0.5F) + o.du * 0.5F - farthest;
+  for (int x = begin; x < end; ++x) row[x] = std::max(row[x], start + o.du * static_cast<float>(x));
+  return static_cast<std::size_t>(std::max(end - begin, 0));
 }
 
-/// Enters a triangle in every cell that it touches and in which nothing covers it.
-void LampView::enter(std::size_t face, std::uint32_t triangle) {
-  Outline o;
-  if (!outline(face, triangle, o)) return;
+/// Enters a triangle in every cell of a row that it touches and in which nothing covers it. \return how many it touches.
+std::size_t LampView::enter_row(std::size_t face, std::uint32_t triangle, const Outline& o, int y) {
   const auto limit = static_cast<float>(cells_);
   const float nearest = 0.5F * (std::abs(o.du) + std::abs(o.dv));
-  const int first = static_cast<int>(std::floor(std::clamp(o.top - kWider, 0.0F, limit - 1.0F)));
-  const int last = static_cast<int>(std::floor(std::clamp(o.bottom + kWider, 0.0F, limit - 1.0F)));
-  for (int y = first; y <= last; ++y) {
-    const auto above = static_cast<float>(y);
-    const float below = above + 1.0F;
-    float left = std::numeric_limits<float>::max();
-    float right = -left;
-    float l = 0.0F;
-    float r = 0.0F;
-    if (o.across(above, l, r)) {
-      left = std::min(left, l);
-      right = std::max(right, r);
-    }
-    if (o.across(below, l, r)) {
-      left = std::min(left, l);
-      right = std::max(right, r);
-    }
-    for (std::size_t i = 0; i < o.count; ++i) {
-      if (o.corners[i].y() < above - kWider || o.corners[i].y() > below + kWider) continue;
-      left = std::min(left, o.corners[i].x());
-      right = std::max(right, o.corners[i].x());
-    }
-    if (!(left <= right) || right < -kWider || left > limit + kWider) continue;
-    const int begin = static_cast<int>(std::floor(std::clamp(left - kWider, 0.0F, limit - 1.0F)));
-    const int end = static_cast<int>(std::floor(std::clamp(right + kWider, 0.0F, limit - 1.0F)));
-    const std::size_t row =
-        (face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) * static_cast<std::size_t>(cells_);
-    const float start = o.at_origin + o.dv * (above + 0.5F) + o.du * 0.5F + nearest;
-    for (int x = begin; x <= end; ++x) {
-      const std::size_t cell = row + static_cast<std::size_t>(x);
-      if (start + o.du * static_cast<float>(x) < covered_[cell] * 0.9999F) continue;
-      if (entries_[cell].triangle == kNone) {
-        entries_[cell].triangle = triangle;
-      } else if (entries_used_ < entries_.size()) {
-        entries_[entries_used_] = {triangle, entries_[cell].next};
-        entries_[cell].next = static_cast<std::uint32_t>(entries_used_++);
-      } else {
-        full_ = true;
-      }
+  const auto above = static_cast<float>(y);
+  const float below = above + 1.0F;
+  float left = std::numeric_limits<float>::max();
+  float right = -left;
+  float l = 0.0F;
+  float r = 0.0F;
+  if (o.across(above, l, r)) {
+    left = std::min(left, l);
+    right = std::max(right, r);
+  }
+  if (o.across(below, l, r)) {
+    left = std::min(left, l);
+    right = std::max(right, r);
+  }
+  for (std::size_t i = 0; i < o.count; ++i) {
+    if (o.corners[i].y() < above - kWider || o.corners[i].y() > below + kWider) continue;
+    left = std::min(left, o.corners[i].x());
+    right = std::max(right, o.corners[i].x());
+  }
+  if (!(left <= right) || right < -kWider || left > limit + kWider) return 0;
+  const int begin = static_cast<int>(std::floor(std::clamp(left - kWider, 0.0F, limit - 1.0F)));
+  const int end = static_cast<int>(std::floor(std::clamp(right + kWider, 0.0F, limit - 1.0F)));
+  const std::size_t row =
+      (face * static_cast<std::size_t>(cells_) + static_cast<std::size_t>(y)) * static_cast<std::size_t>(cells_);
+  const float start = o.at_origin + o.dv * (above + 0.5F) + o.du * 0.5F + nearest;
+  for (int x = begin; x <= end; ++x) {
+    const std::size_t cell = row + static_cast<std::size_t>(x);
+    if (start + o.du * static_cast<float>(x) < covered_[cell] * 0.9999F) continue;
+    if (entries_[cell].triangle == kNone) {
+      entries_[cell].triangle = triangle;
+    } else if (entries_used_ < entries_.size()) {
+      entries_[entries_used_] = {triangle, entries_[cell].next};
+      entries_[cell].next = static_cast<std::uint32_t>(entries_used_++);
+    } else {
+      full_ = true;
     }
   }
+  return static_cast<std::size_t>(end - begin + 1);
 }
 
 std::uint32_t LampView::cell_of(const Eigen::Vector3f& ray) const {

@@ -17,8 +17,13 @@ class LampView {
   /// \param map  outlives it.
   LampView(const world::Map& map, const ShadeParameters& parameters);
 
-  /// Sorts the map's triangles into the cells. Allocates nothing.
+  /// Sorts the map's triangles into the cells, all at once. Allocates nothing.
   void place(const Eigen::Vector3f& p_WL);
+
+  /// The same in steps: begin(), then go_on() until it says that all is sorted; questions may be asked from then on.
+  void begin(const Eigen::Vector3f& p_WL);
+  /// \param work  about so many cells or triangles are visited, a row of cells more at most. \return whether all is sorted.
+  bool go_on(std::size_t work);
 
   static constexpr std::uint32_t kSeveral = 0xFFFFFFFEU;
   struct Answer {
@@ -59,11 +64,24 @@ class LampView {
   struct Outline;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
+  /// What sorting does first, next and last; for each face, triangle after triangle, but for the first two.
+  enum class Phase : std::uint8_t { kClear, kSee, kCover, kEnter, kDone };
+  struct Progress {
+    Phase phase = Phase::kDone;
+    std::size_t face = 0;
+    std::size_t next = 0;  ///< cell of kClear, surface of kSee, triangle of the others.
+    int row = 0;           ///< of that triangle's outline: those above are done.
+  };
+
   [[nodiscard]] std::uint32_t cell_of(const Eigen::Vector3f& ray) const;
+  void enter_phase(Phase phase) { progress_ = {.phase = phase}; }
+  std::size_t clear(std::size_t work);
+  std::size_t see_surface();
   void see(std::uint32_t triangle, std::uint32_t surface);
   [[nodiscard]] bool outline(std::size_t face, std::uint32_t triangle, Outline& out) const;
-  void cover(std::size_t face, std::uint32_t triangle);
-  void enter(std::size_t face, std::uint32_t triangle);
+  std::size_t lay_triangle(std::size_t work);
+  [[nodiscard]] std::size_t cover_row(std::size_t face, const Outline& o, int y);
+  [[nodiscard]] std::size_t enter_row(std::size_t face, std::uint32_t triangle, const Outline& o, int y);
 
   const world::Map& map_;
   float most_;  ///< nearness up to which a point counts as being on a surface, not behind it.
@@ -75,6 +93,7 @@ class LampView {
       covered_;  ///< [cell] of the six faces: 1/depth of the nearest triangle that covers all of it; 0: none does.
   std::vector<Entry> entries_;  ///< the first of each cell, then those that follow.
   std::size_t entries_used_ = 0;
+  Progress progress_;
   bool placed_ = false;
   bool full_ = false;
 };

@@ -34,14 +34,11 @@ ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& param
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, raster_of(parameters)),
       buffer_(raster_of(parameters).width, raster_of(parameters).height),
-      lamp_(map, parameters),
+      lamps_{Silhouettes(map, parameters), Silhouettes(map, parameters)},
       growth_(parameters.width, parameters.height) {
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
-  for (const Eigen::Vector3f& p : map.vertices) box_.extend(p);
-  lamp_in_front_.resize(map.surfaces.size());
   rays_.resize(cells);
   ends_.resize(cells);
-  silhouettes_.reserve(std::min(map.edges.size(), static_cast<std::size_t>(parameters.max_edges)));
   sides_.resize(cells * static_cast<std::size_t>(parameters.finer * parameters.finer));
   masks_.width = parameters.width;
   masks_.height = parameters.height;
@@ -62,17 +59,18 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
 
 const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
                                       const Eigen::Vector3d& p_WL, int widen_cells, const ShadeErrors* errors) {
-  const bool same_lamp = valid_ && p_WL == p_WL_;
+  const bool same_lamp = valid_ && p_WL == p_WL_drawn_;
   const bool same_errors = (errors != nullptr) == uncertain_ &&
                            (errors == nullptr || (errors->lamp == errors_.lamp && errors->pose == errors_.pose));
   if (same_lamp && X_WC.matrix() == X_WC_.matrix() && same(camera, camera_) && widen_cells == widened_ && same_errors) {
     return masks_;
   }
   if (!same(camera, camera_)) take_camera(camera);
-  if (!same_lamp) take_lamp(p_WL.cast<float>());
+  UnlimitedBudget whole;
+  prepare(p_WL, whole);
   valid_ = true;
   X_WC_ = X_WC;
-  p_WL_ = p_WL;
+  p_WL_drawn_ = p_WL;
   widened_ = widen_cells;
   uncertain_ = errors != nullptr;
   if (uncertain_) errors_ = *errors;
@@ -91,6 +89,22 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
     growth_.grow_square(masks_.possibly_shaded.data(), widen_cells);
   }
   return masks_;
+}
+
+bool ShadowVolumes::prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget) {
+  if (p_WL == p_WL_) return true;
+  if (p_WL != p_WL_next_) {
+    p_WL_next_ = p_WL;
+    lamps_[1 - now_].begin(p_WL.cast<float>());
+  }
+  while (budget.grant()) {
+    if (!lamps_[1 - now_].work_unit()) continue;
+    now_ = 1 - now_;
+    p_WL_ = p_WL;
+    p_WL_next_ = kNowhere;
+    return true;
+  }
+  return false;
 }
 
 void ShadowVolumes::take_camera(const geometry::Camera& camera) {
@@ -118,92 +132,13 @@ void ShadowVolumes::take_camera(const geometry::Camera& camera) {
   }
 }
 
-/// Silhouettes: edges of which one surface is turned to the lamp and the other is not, or is not there.
-void ShadowVolumes::take_lamp(const Eigen::Vector3f& p_WL) {
-  lamp_.place(p_WL);
-  silhouettes_.clear();
-  for (std::size_t i = 0; i < map_.surfaces.size(); ++i) {
-    lamp_in_front_[i] = map_.surfaces[i].normal.dot(p_WL) > map_.surfaces[i].offset_m ? 1 : 0;
-  }
-  for (std::uint32_t name = 0; name < map_.edges.size(); ++name) {
-    const world::Edge& edge = map_.edges[name];
-    if (edge.surfaces[0] == world::kNone && edge.surfaces[1] == world::kNone) continue;
-    if (edge.surfaces[0] != world::kNone && edge.surfaces[1] != world::kNone &&
-        lamp_in_front_[edge.surfaces[0]] == lamp_in_front_[edge.surfaces[1]]) {
-      continue;
-    }
-    if (silhouettes_.size() == silhouettes_.capacity()) return;
-    take_edge(edge, p_WL);
-  }
-}
-
-/// Tries places along an edge: what the lamp does not see of it lies in shade already and bounds nothing.
-void ShadowVolumes::take_edge(const world::Edge& edge, const Eigen::Vector3f& p_WL) {
-  constexpr float kStep_m = 0.04F;
-  constexpr float kMostSteps = 48.0F;
-  constexpr float kSpare = 1.02F;
-  const Eigen::Vector3f& a = map_.vertices[edge.vertices[0]];
-  const Eigen::Vector3f& b = map_.vertices[edge.vertices[1]];
-  const Eigen::Vector3f way = b - a;
-  const float length_m = way.norm();
-  if (length_m < 1e-6F) return;
-  const auto steps = static_cast<int>(std::clamp(length_m / kStep_m, 4.0F, kMostSteps));
-  const float step = 1.0F / static_cast<float>(steps);
-  int first = -1;  // of the stretch that is being seen
-  int last = -1;
-  float reach = 0.0F;
-  const auto end_stretch = [&] {
-    if (first < 0 || silhouettes_.size() == silhouettes_.capacity()) return;
-    const float from = std::max(static_cast<float>(first - 1) * step, 0.0F);
-    const float to = std::min(static_cast<float>(last + 2) * step, 1.0F);
-    silhouettes_.push_back({a + from * way, a + to * way, kSpare * reach});
-    first = -1;
-    reach = 0.0F;
-  };
-  for (int i = 0; i < steps; ++i) {
-    const float here = reach_beyond(a + (static_cast<float>(i) + 0.5F) * step * way, way / length_m, p_WL);
-    if (here > 1.0F) {
-      if (first < 0) first = i;
-      last = i;
-      reach = std::max(reach, here);
-    } else if (i > last + 2) {
-      end_stretch();
-    }
-  }
-  end_stretch();
-}
-
-/// How many times as far as a place of an edge the light goes that just passes it. \return not above 1: none does, or both sides of the edge are
-/// stopped there.
-float ShadowVolumes::reach_beyond(const Eigen::Vector3f& p_W, const Eigen::Vector3f& along,
-                                  const Eigen::Vector3f& p_WL) const {
-  constexpr float kBeside = 1e-3F;  // of the distance
-  constexpr float kBeyond = 1.0005F;
-  const Eigen::Vector3f beside = kBeside * (p_W - p_WL).cross(along);
-  const float reach = std::max(lamp_.reach(p_W + beside), lamp_.reach(p_W - beside));
-  if (reach < kBeyond) return 0.0F;
-  return std::min(reach, leaves_map_after(p_W, p_WL));
-}
-
-/// How far the lamp's ray through a point goes until it is out of the map's box, in units of the way to the point.
-float ShadowVolumes::leaves_map_after(const Eigen::Vector3f& p_W, const Eigen::Vector3f& p_WL) const {
-  float after = 1e4F;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const float way = p_W[i] - p_WL[i];
-    if (std::abs(way) < 1e-6F) continue;
-    const float border = way > 0.0F ? box_.max()[i] : box_.min()[i];
-    after = std::min(after, (border - p_WL[i]) / way);
-  }
-  return std::max(1.2F * after, 1.0F);
-}
-
 void ShadowVolumes::mark_sides(const Eigen::Vector3f& p_WL) {
   std::fill(sides_.begin(), sides_.end(), std::uint8_t{0});
-  for (const Side& side : silhouettes_) draw_side(side, p_WL);
+  for (const Silhouettes::Side& side : lamps_[now_].sides()) draw_side(side, p_WL);
 }
 
 /// The side of a volume: from the edge away from the lamp, to where its shade has fallen on something.
-void ShadowVolumes::draw_side(const Side& side, const Eigen::Vector3f& p_WL) {
+void ShadowVolumes::draw_side(const Silhouettes::Side& side, const Eigen::Vector3f& p_WL) {
   const Eigen::Vector3f to_a = side.a - p_WL;
   const Eigen::Vector3f to_b = side.b - p_WL;
   const Eigen::Vector3f n = to_a.cross(to_b);
@@ -296,7 +231,7 @@ void ShadowVolumes::follow(const Ray& ray, std::uint32_t triangle, End& end) con
   if (triangle == DepthBuffer::kNothing) return;
   const std::uint32_t own = surfaces_.surface_of(triangle);
   // A sheet between lamp and camera shades itself: what is seen is its other side.
-  if ((lamp_in_front_[own] != 0) != surfaces_.from_front(own)) {
+  if (lamps_[now_].in_front_of(own) != surfaces_.from_front(own)) {
     end.shaded = 255;
     end.seen = triangle;
     return;
@@ -304,13 +239,13 @@ void ShadowVolumes::follow(const Ray& ray, std::uint32_t triangle, End& end) con
   // From the lamp to where the ray ends, times 1/Z: no division is needed.
   const float w = surfaces_.plane_of(own).at(ray.u, ray.v);
   const Eigen::Vector3f way = (w * from_lamp_ + axes_.ahead) + (ray.x * axes_.right + ray.y * axes_.down);
-  const LampView::Answer answer = lamp_.look_along(way, w, own);
+  const LampView::Answer answer = lamps_[now_].lamp().look_along(way, w, own);
   end.shaded = answer.hidden ? 255 : 0;
   end.seen = answer.seen;
 }
 
 void ShadowVolumes::write_masks() {
-  const std::uint8_t in_shade = lamp_.look_at(axes_.p_WC, world::kNone).hidden ? 1 : 0;
+  const std::uint8_t in_shade = lamps_[now_].lamp().look_at(axes_.p_WC, world::kNone).hidden ? 1 : 0;
   std::uint8_t* const surface =
       masks_.surface_shaded.data();  // bytes may point anywhere: spare what is behind the vectors a look
   std::uint8_t* const possibly = masks_.possibly_shaded.data();

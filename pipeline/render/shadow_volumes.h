@@ -2,13 +2,15 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
-#include "pipeline/render/lamp_view.h"
 #include "pipeline/render/mask_growth.h"
 #include "pipeline/render/shade_parameters.h"
+#include "pipeline/render/silhouettes.h"
 #include "pipeline/render/surface_raster.h"
 #include "pipeline/render/view.h"
+#include "platform/work_budget.h"
 
 namespace cgsr::render {
 
@@ -34,7 +36,8 @@ struct ShadeErrors {
 /// before the map's first surface, the ray passes through shade; it does so without a side only when it begins or ends there. So nothing needs
 /// to be counted, volumes need no caps, and a camera inside of one is no special case.
 ///
-/// What depends on lamp and map alone is kept while the lamp stays; with the same pose and camera as before the masks are kept as well.
+/// What depends on lamp and map alone is kept while the lamp stays; with the same pose and camera as before the masks are kept as well. A new place
+/// of the lamp costs many times a look: prepare() spreads it over images, and the place before stays until it is done.
 class ShadowVolumes {
  public:
   /// \param map  outlives it.
@@ -49,8 +52,13 @@ class ShadowVolumes {
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          const ShadeErrors& errors);
 
-  /// Stretches of edges that bound volumes, for the last lamp.
-  [[nodiscard]] std::size_t silhouettes() const { return silhouettes_.size(); }
+  /// Computes what depends on the lamp's place, a unit (Silhouettes::work_unit) for each grant, and goes on from there when called again with the
+  /// same place. \return whether it is complete: look() at this place is then as cheap as at the last one. What is not complete leaves the place
+  /// before prepared.
+  bool prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget);
+
+  /// Stretches of edges that bound volumes, for the lamp that is prepared.
+  [[nodiscard]] std::size_t silhouettes() const { return lamps_[now_].sides().size(); }
 
  private:
   /// The ray of a cell's middle.
@@ -71,12 +79,6 @@ class ShadowVolumes {
     [[nodiscard]] bool like(const End& other) const {
       return triangle == other.triangle && seen == other.seen && seen != LampView::kSeveral && shaded == other.shaded;
     }
-  };
-  /// A stretch of a silhouette that the lamp sees, and how many times as far as it its shade goes.
-  struct Side {
-    Eigen::Vector3f a;
-    Eigen::Vector3f b;
-    float reach;
   };
   /// A side behind its edge: from both of its ends away from the lamp.
   struct Strip {
@@ -106,13 +108,8 @@ class ShadowVolumes {
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          int widen_cells, const ShadeErrors* errors);
   void take_camera(const geometry::Camera& camera);
-  void take_lamp(const Eigen::Vector3f& p_WL);
   void mark_sides(const Eigen::Vector3f& p_WL);
-  void take_edge(const world::Edge& edge, const Eigen::Vector3f& p_WL);
-  [[nodiscard]] float reach_beyond(const Eigen::Vector3f& p_W, const Eigen::Vector3f& along,
-                                   const Eigen::Vector3f& p_WL) const;
-  [[nodiscard]] float leaves_map_after(const Eigen::Vector3f& p_W, const Eigen::Vector3f& p_WL) const;
-  void draw_side(const Side& side, const Eigen::Vector3f& p_WL);
+  void draw_side(const Silhouettes::Side& side, const Eigen::Vector3f& p_WL);
   [[nodiscard]] PartEnd end_of(const Strip& strip, float times) const;
   void draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to);
   [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
@@ -128,12 +125,10 @@ class ShadowVolumes {
   const View* view_;
   SurfaceRaster surfaces_;
   DepthBuffer buffer_;
-  LampView lamp_;
-  Eigen::AlignedBox3f box_;
+  std::array<Silhouettes, 2> lamps_;  ///< what is looked at, and what is being prepared.
+  std::size_t now_ = 0;               ///< the first of them.
   std::vector<Ray> rays_;
   std::vector<End> ends_;
-  std::vector<std::uint8_t> lamp_in_front_;  ///< [surface]: on the side that its normal points to.
-  std::vector<Side> silhouettes_;
   std::vector<std::uint8_t>
       sides_;  ///< of the raster: a volume's side stands before the surface; the bit says how uncertain its place is.
   MaskGrowth growth_;
@@ -141,7 +136,10 @@ class ShadowVolumes {
   bool valid_ = false;
   geometry::Pose X_WC_ = geometry::Pose::Identity();
   geometry::Camera camera_;
-  Eigen::Vector3d p_WL_ = Eigen::Vector3d::Zero();
+  inline static const Eigen::Vector3d kNowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d p_WL_ = kNowhere;        ///< that is prepared,
+  Eigen::Vector3d p_WL_next_ = kNowhere;   ///< that is being prepared,
+  Eigen::Vector3d p_WL_drawn_ = kNowhere;  ///< of the masks.
   int widened_ = 0;
   bool uncertain_ = false;
   ShadeErrors errors_;

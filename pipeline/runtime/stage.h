@@ -7,6 +7,7 @@
 #include <functional>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -39,7 +40,8 @@ struct OutputOf<Worker> {
 /// One line of the loop: a name in the schedule, the worker that does the work, and its last output.
 ///
 /// \tparam Worker  a class with `Output` and `Output update(inputs...)`, or, when its work comes in units,
-///         `Output update(WorkBudget&, inputs...)`; or a function object with one signature of either kind. Output is
+///         `Output update(WorkBudget&, inputs...)`; or a function object with one signature of either kind. One that returns
+///         std::optional<Output> keeps its last output, which ages, with nothing. Output is
 ///         default-constructible (meaning: nothing yet) and assignable. It must stay valid until the stage's next run: it owns
 ///         its data, holds a lease on it, or points into what the worker keeps; never into an image.
 template <class Worker>
@@ -62,8 +64,8 @@ class Stage {
   static constexpr std::size_t kNoRow = kMostStages;
 
   template <class... Inputs>
-  Output work(WorkBudget& budget, const Inputs&... inputs) {
-    if (!worker_) return {};
+  std::optional<Output> work(WorkBudget& budget, const Inputs&... inputs) {
+    if (!worker_) return Output{};
     if constexpr (requires { worker_->update(budget, inputs...); }) {
       return worker_->update(budget, inputs...);
     } else if constexpr (requires { worker_->update(inputs...); }) {
@@ -123,9 +125,12 @@ class StageRunner {
     auto& last = stage.last_;
     if (begin_stage(stage.row_, stage.name_)) {
       try {
-        last.value = stage.work(budget_, inputs...);
-        last.stamp = record_.stamp;
-        last.age = Duration::zero();
+        auto output = stage.work(budget_, inputs...);
+        if (output) {
+          last.value = *std::move(output);
+          last.stamp = record_.stamp;
+        }
+        if (last.ever() || output) last.age = record_.stamp - last.stamp;
         end_stage(stage.row_, StageOutcome::kRan);
         return last;
       } catch (const std::exception& error) {

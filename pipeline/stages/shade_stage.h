@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 #include "pipeline/geometry/camera.h"
@@ -27,8 +28,10 @@ struct ShadeStageParameters {
   static void describe(Self& self, Visitor& visit) {
     visit.number("max_lamp_sigma_m", self.max_lamp_sigma_m, {0.001, 10.0}, "m",
                  "Masks are computed only for a lamp whose standard deviation is at most this.");
-    visit.number("max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
-                 "The silhouettes are computed again when the lamp's estimate has moved further than this.");
+    visit.number(
+        "max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
+        "The silhouettes are computed again when the lamp's estimate has moved further than this; meanwhile the old "
+        "ones serve, widened by the way, unless that is longer than max_lamp_sigma_m.");
     visit.section("masks", self.masks, "Computation of the shadow masks (5.2)");
   }
 };
@@ -38,6 +41,7 @@ enum class ShadeStatus : std::uint8_t {
   kNoMap,        ///< what could throw shadows is not known.
   kNoLamp,       ///< no lamp is known: ambient light only.
   kLampUnsure,   ///< known too roughly.
+  kPreparing,    ///< the silhouettes of a new place of the lamp are being computed.
   kPoseUnknown,  ///< the camera's pose is not known.
   kNoRoom,       ///< every mask buffer is still read by somebody.
 };
@@ -63,26 +67,36 @@ class ShadeStage {
   static constexpr std::string_view kName = "shade";
   static constexpr std::string_view kMeaning =
       "What lies in the lamp's shadow: the masks, from map, pose and lamp (5.2).";
-  static constexpr runtime::StageParameters kRow{2, 1, 7000, 0, runtime::OnOverrun::kSkip};
+  static constexpr runtime::StageParameters kRow{2, 1, 7000, 30, runtime::OnOverrun::kSkip};
   static constexpr Duration kMaxLampAge = seconds(0.5);  ///< of the probes' report that is used.
 
   /// \param map  not null.  \param camera  of the images that come.
   ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Camera& camera,
              const ShadeStageParameters& parameters);
 
+  /// \param budget  asked before each unit of work on a new place of the lamp (Silhouettes::work_unit).
   /// \param pose  of this image: masks of an older one would lie beside the shadows.
-  Output update(const runtime::Aged<PoseEstimate>& pose, const runtime::Aged<LampReport>& lamp);
+  /// \return nothing: this turn went into a new place of the lamp, the last masks stay for now.
+  std::optional<Output> update(WorkBudget& budget, const runtime::Aged<PoseEstimate>& pose,
+                               const runtime::Aged<LampReport>& lamp);
 
   /// The same with pose and lamp as their owner knows them. \param lamp  null: none is known.
-  Output update(const geometry::Pose& X_WC, const geometry::Matrix6d& covariance, const illumination::KnownLamp* lamp);
+  std::optional<Output> update(WorkBudget& budget, const geometry::Pose& X_WC, const geometry::Matrix6d& covariance,
+                               const illumination::KnownLamp* lamp);
 
  private:
+  /// Works on the silhouettes of a new place. \return whether they are there, and units for a look at them are left.
+  bool prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget);
+
   std::shared_ptr<const world::Map> map_;
   geometry::Camera camera_;
   ShadeStageParameters parameters_;
   render::ShadowVolumes volumes_;
   Pool<render::ShadeMasks> masks_;
-  Eigen::Vector3d p_WL_kept_ = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  inline static const Eigen::Vector3d kNowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d p_WL_kept_ = kNowhere;      ///< whose silhouettes there are,
+  Eigen::Vector3d p_WL_prepared_ = kNowhere;  ///< and whose are being computed.
+  bool looked_last_ = false;  ///< the last turn gave masks: while silhouettes are computed, the next does not.
 };
 
 }  // namespace cgsr::stages

@@ -8,6 +8,7 @@
 
 #include "tests/render/box_map.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/counted_budget.h"
 
 namespace cgsr::render {
 namespace {
@@ -112,6 +113,47 @@ TEST(ShadowVolumes, WhatDidNotMoveIsKeptAndWhatDidIsDrawnAnew) {
   EXPECT_EQ(volumes.look(X_WC, Camera(), {0.0, 0.0, 2.75}).surface_shaded, first);
   EXPECT_GT(count(volumes.look(X_WC, Camera(), {0.0, 0.0, 2.75}, 2).surface_shaded), count(first));
   EXPECT_EQ(volumes.look(X_WC, Camera(), {0.0, 0.0, 2.75}).surface_shaded, first);
+}
+
+TEST(ShadowVolumes, APlaceThatIsPreparedInStepsGivesTheSameMasks) {
+  const Map map = table_over_floor();
+  const Pose X_WC = looking_from({-4.0, 0.0, 1.2}, {0.0, 0.0, 0.3});
+  const Vector3d before(0.0, 0.0, 2.75);
+  const Vector3d after(1.0, 0.4, 2.2);
+  ShadowVolumes whole(map, {});
+  const ShadeMasks old = whole.look(X_WC, Camera(), before);
+  const ShadeMasks wanted = whole.look(X_WC, Camera(), after);
+  const std::size_t wanted_silhouettes = whole.silhouettes();
+
+  for (const int units : {1, 3, 20}) {
+    ShadowVolumes volumes(map, {});
+    volumes.look(X_WC, Camera(), before);
+    int images = 1;
+    for (; images < 1000; ++images) {
+      CountedBudget budget(units);
+      if (volumes.prepare(after, budget)) break;
+      EXPECT_EQ(volumes.look(X_WC, Camera(), before).possibly_shaded, old.possibly_shaded) << "the old place serves";
+    }
+    EXPECT_GT(images, 2);
+    EXPECT_LT(images, 1000);
+    EXPECT_EQ(volumes.silhouettes(), wanted_silhouettes);
+    EXPECT_EQ(volumes.look(X_WC, Camera(), after).surface_shaded, wanted.surface_shaded);
+    EXPECT_EQ(volumes.look(X_WC, Camera(), after).possibly_shaded, wanted.possibly_shaded);
+  }
+}
+
+TEST(ShadowVolumes, AnotherPlaceBeginsAnewAndTheSameOneGoesOn) {
+  const Map map = table_over_floor();
+  ShadowVolumes volumes(map, {});
+  CountedBudget some(5);
+  EXPECT_FALSE(volumes.prepare({1.0, 0.4, 2.2}, some));
+  UnlimitedBudget rest;
+  EXPECT_TRUE(volumes.prepare({0.0, 0.0, 2.75}, rest));
+  ShadowVolumes fresh(map, {});
+  EXPECT_TRUE(fresh.prepare({0.0, 0.0, 2.75}, rest));
+  EXPECT_EQ(volumes.silhouettes(), fresh.silhouettes());
+  CountedBudget none(0);
+  EXPECT_TRUE(volumes.prepare({0.0, 0.0, 2.75}, none)) << "nothing is left to do";
 }
 
 ShadeErrors errors_of(double lamp_m, double place_m, double turn_rad) {

@@ -284,6 +284,32 @@ TEST(Stage, WithoutAWorkerHasItsTurnAndTheDefaultOutput) {
   EXPECT_EQ(runner.end_frame().stages[0].outcome, StageOutcome::kRan);
 }
 
+struct EverySecond {
+  using Output = int;
+  static constexpr std::string_view kName = "only";
+  std::optional<int> update(int input) { return input % 2 == 0 ? std::optional<int>(input) : std::nullopt; }
+};
+
+TEST(Stage, ThatHasNothingNewKeepsItsLastOutputWhichAges) {
+  SimulatedClock clock;
+  MotionStop stop;
+  StageRunner runner(clock, schedule_of({stage_row("only", 1, 0, 1000)}), BudgetSource::kUnits, stop);
+  Stage<EverySecond> stage(std::make_unique<EverySecond>());
+  ASSERT_TRUE(runner.bind(stage));
+  const auto frame = [&](int number) {
+    runner.begin_frame(frame_start(number));
+    const Aged<int> output = runner.run(stage, number);
+    EXPECT_EQ(runner.end_frame().stages[0].outcome, StageOutcome::kRan);
+    return output;
+  };
+  EXPECT_FALSE(frame(1).ever());
+  EXPECT_TRUE(frame(2).fresh());
+  const Aged<int> kept = frame(3);
+  EXPECT_EQ(kept.value, 2);
+  EXPECT_EQ(kept.age, frame_start(3).stamp - frame_start(2).stamp);
+  EXPECT_TRUE(frame(4).fresh());
+}
+
 // Whoever reads an output says how old is too old.
 TEST(Aged, IsReadOnlyUpToTheAgeThatItsReaderStates) {
   Aged<int> never;

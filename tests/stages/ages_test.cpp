@@ -1,10 +1,13 @@
 // Every reader of a stage's output states how old is too old: the producer is skipped, faults or lags, and the reader does without.
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "pipeline/stages/color_stages.h"
 #include "pipeline/stages/tasks.h"
 #include "pipeline/world/load.h"
 #include "src/config/color.h"
+#include "tests/support/counted_budget.h"
 #include "tests/tasks/painted_camera.h"
 
 namespace cgsr::stages {
@@ -97,31 +100,59 @@ class ShadeEdges : public ::testing::Test {
 
   std::shared_ptr<const world::Map> map_;
   ShadeStage stage_;
+  UnlimitedBudget budget_;
 };
 
 TEST_F(ShadeEdges, MasksNeedThePoseOfThisImage) {
   const auto lamp = aged(known_lamp(), kNow);
-  EXPECT_EQ(stage_.update(aged(known_pose(), kFrame), lamp).status, ShadeStatus::kPoseUnknown);
-  EXPECT_EQ(stage_.update({}, lamp).status, ShadeStatus::kPoseUnknown);
-  EXPECT_EQ(stage_.update(aged(known_pose(), kNow), lamp).status, ShadeStatus::kMasked);
+  EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kFrame), lamp)->status, ShadeStatus::kPoseUnknown);
+  EXPECT_EQ(stage_.update(budget_, {}, lamp)->status, ShadeStatus::kPoseUnknown);
+  EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kNow), lamp)->status, ShadeStatus::kMasked);
 }
 
 TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
   const auto pose = aged(known_pose(), kNow);
-  EXPECT_EQ(stage_.update(pose, aged(known_lamp(), ShadeStage::kMaxLampAge)).status, ShadeStatus::kMasked);
-  EXPECT_EQ(stage_.update(pose, aged(known_lamp(), ShadeStage::kMaxLampAge + kFrame)).status, ShadeStatus::kNoLamp);
-  EXPECT_EQ(stage_.update(pose, {}).status, ShadeStatus::kNoLamp);
+  EXPECT_EQ(stage_.update(budget_, pose, aged(known_lamp(), ShadeStage::kMaxLampAge))->status, ShadeStatus::kMasked);
+  EXPECT_EQ(stage_.update(budget_, pose, aged(known_lamp(), ShadeStage::kMaxLampAge + kFrame))->status,
+            ShadeStatus::kNoLamp);
+  EXPECT_EQ(stage_.update(budget_, pose, {})->status, ShadeStatus::kNoLamp);
 }
 
 TEST_F(ShadeEdges, WithoutARoomForNewMasksItSaysSo) {
   std::vector<ShadowMasks> held;
   for (int i = 0; i < 20; ++i) {
-    held.push_back(stage_.update(aged(known_pose(), kNow), aged(known_lamp(), kNow)));
+    held.push_back(*stage_.update(budget_, aged(known_pose(), kNow), aged(known_lamp(), kNow)));
     if (held.back().status == ShadeStatus::kNoRoom) break;
   }
   EXPECT_EQ(held.back().status, ShadeStatus::kNoRoom);
   held.clear();
-  EXPECT_EQ(stage_.update(aged(known_pose(), kNow), aged(known_lamp(), kNow)).status, ShadeStatus::kMasked);
+  EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kNow), aged(known_lamp(), kNow))->status, ShadeStatus::kMasked);
+}
+
+TEST_F(ShadeEdges, ANewPlaceOfTheLampIsPreparedOverImages) {
+  const auto pose = aged(known_pose(), kNow);
+  LampReport lamp = known_lamp();
+  const auto status = [&](int units) -> std::optional<ShadeStatus> {
+    CountedBudget budget(units);
+    const auto output = stage_.update(budget, pose, aged(lamp, kNow));
+    if (!output) return std::nullopt;
+    return output->status;
+  };
+  EXPECT_EQ(status(30), ShadeStatus::kPreparing) << "there were no silhouettes before";
+  int images = 1;
+  while (images < 200 && status(30) == ShadeStatus::kPreparing) ++images;
+  EXPECT_GT(images, 5);
+  EXPECT_LT(images, 200);
+  EXPECT_EQ(status(30), ShadeStatus::kMasked);
+  lamp.lamp.p_WL.x() += 0.1;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(status(30), std::nullopt) << "a little way: work on the new silhouettes, the last masks stay";
+    EXPECT_EQ(status(30), ShadeStatus::kMasked) << "the old ones serve, widened";
+  }
+  lamp.lamp.p_WL.x() += 1.0;
+  EXPECT_EQ(status(30), ShadeStatus::kPreparing) << "another lamp: the old ones would be wrong";
+  EXPECT_EQ(status(30), ShadeStatus::kPreparing);
+  EXPECT_EQ(status(100'000), ShadeStatus::kMasked);
 }
 
 TEST(RouteEdges, ARobotStopsWhenItsPoseIsTooOld) {

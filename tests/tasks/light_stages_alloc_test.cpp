@@ -50,7 +50,7 @@ class LightStagesAlloc : public ::testing::Test {
     switchboard_.want(LampLine::kProbeLamp, report_.requests_probe_lamp);
     switchboard_.want(LampLine::kRoomLamp, report_.requests_room_lamp);
     const geometry::Pose X_WC = robot_.X_WR * board_.X_RB * board_.X_BC;
-    masked_ += shade_.update(X_WC, robot_.covariance, report_.known ? &report_.lamp : nullptr).masks ? 1 : 0;
+    masked_ += shade_.update(budget_, X_WC, robot_.covariance, report_.known ? &report_.lamp : nullptr)->masks ? 1 : 0;
     behavior::LampBelief belief;
     belief.has_board = belief.readable = true;
     belief.known = report_.known;
@@ -61,6 +61,7 @@ class LightStagesAlloc : public ::testing::Test {
   std::shared_ptr<const world::Map> map_;
   ProbesStage lamp_;
   ShadeStage shade_;
+  UnlimitedBudget budget_;
   behavior::SeekLamp seek_;
   Switchboard switchboard_{{true, true, false}, kPeriod, seconds(0.5)};
   illumination::DrawnImage dark_;
