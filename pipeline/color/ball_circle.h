@@ -24,7 +24,8 @@ struct SizeRange {
   double most_px = 0.0;
 };
 
-/// Which pixels of an image have a colour of the ball: one of the bright ones, or a dark one where it may lie in shade.
+/// Which pixels of an image have a colour of the ball: one of the bright ones, or a dark one where it may lie in shade
+/// (5.3). `of_code` has one entry per colour code (BallModel::of_code).
 struct BallPixels {
   ImageView image;  ///< YUYV.
   const std::uint8_t* of_code = nullptr;
@@ -55,6 +56,7 @@ struct CircleFit {
 /// Fits a circle to what has the ball's colours around a point: rays from there end where the ball's colours do, circles through three ends
 /// each are tried against all ends, and the best one is drawn to the strongest edges near it, in luma and chroma, first roughly, then anew from its
 /// own middle.
+/// Ours: the dissertation (5.3) says only that shape matching is the secondary filter.
 ///
 /// \param x_px, y_px  some place on the ball. \param sizes  diameters that can be.
 /// \return agreement 0 where there is no circle.

@@ -11,6 +11,7 @@ namespace cgsr::color {
 
 /// How far any box of an image is from the learned object, under the light that fits best: the search's measure, plain, for a box that is
 /// on no grid.
+/// The distance of Alg. 3.2, line 7, the least over all learned histograms.
 class BoxDivergence {
  public:
   BoxDivergence(const ColorModel& model, Divergence divergence);

@@ -8,12 +8,13 @@ namespace cgsr::color {
 
 /// Which colours an object has and how much of each: a histogram of Y, U, V. A colour that lies between two bins counts in both, so that a
 /// small error of the light's estimate changes little. It answers what the likelihood of single pixels cannot: whether a colour is missing.
+/// Ours, beside the divergence of Alg. 3.2.
 class ColorAmounts {
  public:
   ColorAmounts() = default;
   explicit ColorAmounts(const ObjectView& view);
 
-  /// \return the Bhattacharyya coefficient of the two: 0, nothing in common, to 1, the same colours in the same amounts.
+  /// \return the Bhattacharyya coefficient of the two (Bhattacharyya 1943): 0, nothing in common, to 1, the same colours in the same amounts.
   [[nodiscard]] double agreement(const ColorAmounts& other) const;
 
  private:

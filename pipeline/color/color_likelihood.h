@@ -10,7 +10,7 @@
 
 namespace cgsr::color {
 
-/// Colours of a patch, three planes.
+/// Colours of a patch: three planes of size.area() values, row by row, as the camera coded them.
 struct ColorPatch {
   imaging::PatchSize size;
   std::vector<std::uint8_t> y, u, v;
@@ -18,11 +18,11 @@ struct ColorPatch {
   explicit ColorPatch(imaging::PatchSize s) : size(s), y(s.area()), u(s.area()), v(s.area()) {}
 };
 
-/// Multiplies R, G and B of every pixel by `gain` (the diagonal model, from one light to another).
+/// Multiplies R, G and B of every pixel by `gain` (the diagonal model from one light to another, Eq. 3.1).
 void relight(ColorPatch& patch, const Light& gain);
 
 /// How likely a pixel belongs to the object, by its colour: the share of the object among object and surroundings in its histogram bin
-/// (Bayes with equal priors; chapter 6's positives and negatives per pixel). 8 x 32 x 32 bins of Y, U, V.
+/// (Bayes with equal priors, Possegger et al. 2015; positives and negatives as in section 6.2.2). 8 x 32 x 32 bins of Y, U, V.
 class ColorLikelihood {
  public:
   ColorLikelihood();

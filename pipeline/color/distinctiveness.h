@@ -6,7 +6,8 @@
 
 namespace cgsr::color {
 
-/// How far a region is from being of a single colour (the multi-colour constraint, 3.1.2).
+/// How far a region is from being of a single colour (the multi-colour constraint, 3.1.2). The measure is ours: the
+/// dissertation only requires several colours.
 struct Distinctiveness {
   double divergence =
       0.0;  ///< Jensen-Shannon divergence [nat] to the nearest single-coloured surface under any light, 0..ln 2.

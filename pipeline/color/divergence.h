@@ -7,8 +7,9 @@
 
 namespace cgsr::color {
 
-/// How two histograms are compared. Each is a decreasing function of a similarity, a sum over the bins of a term that grows with
-/// both shares: what the search's bounds rest on. With p the window's share of a bin and q the learned one:
+/// How two histograms are compared: the DistanceMetric of Alg. 3.2, line 7 (Jensen-Shannon, the dissertation's: Lin 1991; Hellinger:
+/// Comaniciu et al. 2003; intersection: Swain and Ballard 1991). Each is a decreasing function of a similarity, a sum over the bins of a
+/// term that grows with both shares: what the search's bounds rest on. With p the window's share of a bin and q the learned one:
 enum class Divergence : std::uint8_t {
   kJensenShannon,  ///< ln 2 (1 - S) nat,  S = sum [phi(p+q) - phi(p) - phi(q)] / (2 ln 2),  phi(x) = x ln x
   kHellinger,      ///< sqrt(1 - S),  S = sum sqrt(p q), Bhattacharyya's coefficient

@@ -23,6 +23,7 @@ inline void store(Lanes& lanes, __m128i values) {
 
 /// How many pixels have each label. Pixels of label 0 are counted in a slot of their own before the vectors, so that counting needs no branch
 /// and comparing does not meet them.
+/// The histogram of a region in Alg. 3.2, lines 6 and 7; the labels and the layout are ours.
 class LabelHistogram {
  public:
   /// \param labels  how many, 1..labels. The vectors are filled up to a multiple of four with labels that do not occur.

@@ -16,9 +16,9 @@ struct ChannelQuantiles {
 
 ChannelQuantiles channel_quantiles(const ObjectView& view);
 
-/// The diagonal model between two sights of the same surface: per channel the factor g that makes seen = g * learned, by iteratively
-/// reweighted least squares (L1) over the quantiles, without those that are cut off or black. Finer than the grid of lights that
-/// the search compares with.
+/// The diagonal model (Eq. 3.1) between two sights of the same surface: per channel the factor g that makes seen = g * learned, by iteratively
+/// reweighted least squares (L1; Holland and Welsch 1977) over the quantiles, without those that are cut off or black. Finer than
+/// the grid of lights that the search compares with. Ours: the dissertation (3.2.2) knows the light of the best histogram only.
 Light light_gain(const ChannelQuantiles& learned, const ChannelQuantiles& seen);
 
 /// \return the light of the model's grid that is nearest to `light`, channel by channel.

@@ -9,7 +9,7 @@
 
 namespace cgsr::color {
 
-/// A rectangle of whole pixels.
+/// A rectangle of whole pixels of a reduced image: the region of interest of Alg. 3.1, line 2.
 struct PixelRect {
   int left = 0;
   int top = 0;
@@ -22,6 +22,7 @@ struct PixelRect {
 };
 
 /// \return the box grown by `share` of its sides on each side, on whole pixels of an image reduced by `factor`, cut off at its edges.
+///         For widening (3.1.2), and for the ring whose colours are negatives (after 6.2.2).
 PixelRect grown(const Box& box, double share, const imaging::ReducedImage& image);
 
 /// \param coded  an image reduced with the colour codes themselves as labels.

@@ -6,6 +6,7 @@
 namespace cgsr::color {
 
 /// A level of the tree of windows: squares of neighbouring positions, of all sizes together or of one size.
+/// The tree is that of a best-first branch and bound over sets of windows (Lampert et al. 2008); its levels are ours.
 struct SearchLevel {
   int positions = 1;  ///< per side of the square.
   bool all_sizes = false;

@@ -18,6 +18,7 @@ inline constexpr std::array kBinWeightsNames{
     Named<BinWeights>{"surroundings", BinWeights::kSurroundings},
 };
 
+/// Which windows Alg. 3.2 compares (line 6), and how (line 7).
 struct SearchParameters {
   Divergence divergence = Divergence::kJensenShannon;
   BinWeights weights = BinWeights::kSurroundings;
@@ -53,7 +54,7 @@ inline constexpr int kMaxMatches = 16;
 inline constexpr int kMaxSizes = 5;
 
 /// Where the object was and how surely it is still near: a penalty that grows with the square of the distance between the centres
-/// up to a limit, so that it shifts the choice and never forbids: a prior, not a cage.
+/// up to a limit, so that it shifts the choice and never forbids a window (the prior of 3.2.2; its form is ours).
 struct Prior {
   double x_px = 0.0;  ///< centre, camera pixels.
   double y_px = 0.0;

@@ -34,9 +34,9 @@ Labels labels_of(const ColorModel& model);
 ///
 ///   units = floor(kOne * w * similarity_term(p', q) / W),   W = sum over the bins of w q
 ///
-/// In plain mode w = 1 and p' = p: the dissertation's. With surroundings (chapter 6's negatives), under each light separately, because the
-/// same light falls on them: w = max(q / (q + s), min_weight), s the surroundings' share of the bin, and p' = min(p, q): what a colour that
-/// counts has in excess must not make up for one that is missing.
+/// In plain mode w = 1 and p' = p: the dissertation's (Alg. 3.2, line 7). With surroundings (negatives as in section 6.2.2), under each light
+/// separately, because the same light falls on them: w = max(q / (q + s), min_weight), s the surroundings' share of the bin, and
+/// p' = min(p, q): what a colour that counts has in excess must not make up for one that is missing.
 class Similarity {
  public:
   Similarity(const ColorModel& model, const SearchParameters& parameters, const Labels& labels);

@@ -42,6 +42,8 @@ struct BestLight {
 /// pixels that no light knows. t = 0 is the plain bound by monotony; a price on shares keeps it from filling every label of
 /// the group to the brim, and makes it several times sharper. units(k) - t p_low(k) rises to one peak and falls, so that the
 /// maximum splits into a row for m and a row for l.
+///
+/// It is the comparison of Alg. 3.2, lines 5 to 7. The bounds are ours; t is the Lagrange multiplier of the sum of the shares.
 class SimilarityRows {
  public:
   SimilarityRows(const Similarity& similarity, const SearchParameters& parameters);

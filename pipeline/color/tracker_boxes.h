@@ -6,6 +6,7 @@
 #include "platform/box.h"
 
 // Boxes about the same centre, of another size: what the tracker moves and grows.
+// Ours: the dissertation (3.2.2) names location and size in the previous image as a prior, and gives no limits.
 namespace cgsr::color {
 
 inline constexpr double kLargestGrowth = 1.25;  // from one image to the next

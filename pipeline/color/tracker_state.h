@@ -22,6 +22,7 @@ struct Tint {
   double agreement = 0.0;  ///< ColorAmounts::agreement with that light taken out.
 };
 
+/// Mode plain is Alg. 3.2 alone. The rest is ours: doubt, loss and finding again, of which the dissertation (3.2.2) says nothing.
 struct Tracker::State {
   State(const ColorModel& m, const TrackParameters& p, int max_width_px, int max_height_px)
       : model(m),

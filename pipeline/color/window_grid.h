@@ -24,6 +24,7 @@ struct GridWindow {
 
 /// Which windows a request means: the one definition that every search shares. The label image is cut into square cells of one stride;
 /// a window is a rectangle of whole cells.
+/// Its windows are the regions of Alg. 3.2, line 6; the stride and the sizes are ours.
 struct WindowGrid {
   int factor = 2;   ///< camera pixels per label pixel.
   int cell_px = 1;  ///< side of a cell in label pixels: the stride.
