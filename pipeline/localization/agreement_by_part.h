@@ -8,6 +8,7 @@ namespace cgsr::localization {
 
 /// How image and map agree in each part of the image. A wrong pose explains one thing, a floor's tape say, and leaves open all that stands
 /// beside it; a right one fails here and there.
+/// Ours, for the gate: Alg. 4.1 judges no pose. Places are pixels of the working image without lens.
 class AgreementByPart {
  public:
   AgreementByPart(int width_px, int height_px);

@@ -7,7 +7,7 @@
 
 namespace cgsr::localization {
 
-/// What is believed of the camera's pose before the image is looked at.
+/// What is believed of the camera's pose before the image is looked at: X of Alg. 4.1, line 1, with its covariance.
 struct Prior {
   geometry::Pose X_WC = geometry::Pose::Identity();
   geometry::Matrix6d covariance = geometry::Matrix6d::
@@ -34,7 +34,7 @@ struct PriorSigmas {
 /// \return a prior about X_WC whose errors are independent.
 Prior prior_at(const geometry::Pose& X_WC, const PriorSigmas& sigmas);
 
-/// Why a pose was not corrected; kNone: it was.
+/// Why a pose was not corrected; kNone: it was. Ours: Alg. 4.1 always corrects.
 enum class Reason : std::uint8_t {
   kNone,
   kSearching,        ///< more starts are waiting: the next image goes on.

@@ -10,6 +10,8 @@
 namespace cgsr::localization {
 
 /// How near the next perceived edge of a direction is, everywhere in the image: scores a pose without matching anything.
+/// Ours: Alg. 4.1 has one start and needs no score. Within each range of directions the distance is the chamfer 3-4 (Borgefors 1986).
+/// Pixels are those of the working image without lens.
 class DirectionField {
  public:
   DirectionField(int width_px, int height_px);

@@ -8,7 +8,8 @@
 
 namespace cgsr::localization {
 
-/// \return what the matches and the prior leave open of an estimate, in the map as it is.
+/// \return what the matches and the prior leave open of an estimate, in the map as it is: the inverse of Solution::information, of the
+///         step that geometry::moved() takes, metres and radians.
 geometry::Matrix6d covariance_in_map(const Estimate& estimate);
 
 /// \return the same in the world: the map's own error is added. An image's answer is told with it; but the next image sees the same map, and
@@ -30,6 +31,7 @@ bool same_answer(const geometry::Pose& a, const geometry::Pose& b);
 float evidence_of(const Estimate& estimate, const Standing& standing);
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
+/// Ours: Alg. 4.1 has no gate.
 /// \param standing  none: the pose was followed from a narrow prior. How uncertain it may be then is the tracker's to say.
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters);

@@ -15,7 +15,7 @@ enum class Method : std::uint8_t {
 inline constexpr Named<Method> kMethodNames[] = {
     {"glcorrect", Method::kGlCorrect}, {"stronger", Method::kStronger}, {"paper", Method::kPaper}};
 
-/// What draws the edges that should be visible (4.2.2).
+/// What draws the edges that should be visible (4.2).
 enum class ExpectationKind : std::uint8_t {
   kRaster,  ///< render::DepthRaster: the budget path.
   kOsmesa,  ///< render::OsmesaExpectation: OpenGL, as the dissertation has it; whoever makes a Localizer hands it over.

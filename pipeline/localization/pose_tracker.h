@@ -7,6 +7,7 @@
 
 namespace cgsr::localization {
 
+/// How the pose's uncertainty grows with the odometry, and when the pose is lost.
 struct PoseTrackerParameters {
   double slip = 0.05;
   double slip_turn = 0.05;
@@ -79,6 +80,8 @@ struct TrackedPose {
 };
 
 /// The pose of a camera on a robot over time: odometry carries it from image to image, images correct it.
+/// Ours: the dissertation (4.1) assumes a pose estimate and does not say how it is carried on. The prediction is that of an extended Kalman
+/// filter (Kalman 1960), with the odometry as its motion.
 ///
 /// Allocates nothing after construction. Threads: one caller at a time.
 class PoseTracker {

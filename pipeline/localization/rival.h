@@ -11,6 +11,7 @@ namespace cgsr::localization {
 /// shelf's board has two, and the books behind it a third. A belief as narrow as its own never leaves there, however little else fits. So
 /// with every image one pose a few pixels off is tried; one that settles elsewhere and is as good goes along with the robot, and takes the
 /// followed one's place once it has been clearly better over several images.
+/// Ours: Alg. 4.1 follows one pose.
 class Rival {
  public:
   Rival(const LocalizerParameters& parameters, Alternation& alternation);

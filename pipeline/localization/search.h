@@ -21,11 +21,12 @@ struct PriorShape {
   [[nodiscard]] double widest_px() const { return motion_px.maxCoeff(); }
 };
 
-/// Number `index` of a sequence of standard normal numbers whose tuples over `dimension` (0..5) fill space evenly (Halton's).
+/// Number `index` of a sequence of standard normal numbers whose tuples over `dimension` (0..5) fill space evenly (Halton 1960).
 double even_normal(std::uint32_t index, int dimension);
 
 /// Finds the pose in a wide prior: starts spread evenly over it, scored without matching; the best of them refined; then poses about the
 /// winner, because two borders of one frame look alike and the right one may not have been tried. Goes on over several images.
+/// Ours: Alg. 4.1 starts from one pose.
 class Search {
  public:
   Search(const LocalizerParameters& parameters, Alternation& alternation, const geometry::Camera& camera);

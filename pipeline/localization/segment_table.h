@@ -9,7 +9,8 @@
 
 namespace cgsr::localization {
 
-/// A perceived straight edge with the lens taken out: pixels of the working image, as a pinhole would show them.
+/// A perceived straight edge with the lens taken out: pixels of the working image, as a pinhole would show them
+/// (Alg. 4.1, line 3).
 struct PerceivedEdge {
   Eigen::Vector2f middle = Eigen::Vector2f::Zero();
   Eigen::Vector2f direction = Eigen::Vector2f::UnitX();  ///< unit; (-y, x) of it points to the brighter side.
