@@ -4,7 +4,7 @@
 
 namespace cgsr::render {
 
-/// Leaves of the stretch [s0, s1] what has offset + s slope >= 0 (Liang and Barsky, one border).
+/// Leaves of the stretch [s0, s1] what has offset + s slope >= 0 (Liang and Barsky 1984, one border).
 ///
 /// \return false when nothing is left.
 template <class Number>

@@ -19,6 +19,7 @@ struct DepthPlane {
 };
 
 /// The nearest triangle in each cell of a raster, by inverse depth: its w = 1/Z [1/m], 0 where nothing is, and its name.
+/// This is z-buffering (2.3) with inverse depth, which is linear over the raster. (u, v) are cells, 0 at the centre of the top-left one.
 class DepthBuffer {
  public:
   static constexpr std::uint32_t kNothing = 0xFFFFFFFFU;

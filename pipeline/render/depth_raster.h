@@ -15,8 +15,8 @@
 
 namespace cgsr::render {
 
-/// The budget path of 4.2.2's expectation: surfaces into a small depth buffer that also knows whose each cell is, edges sampled against it, ends
-/// of visible pieces found by halving.
+/// The budget path of the expectation: surfaces into a small depth buffer that also knows whose each cell is, edges sampled against it, ends
+/// of visible pieces found by halving. Ours; the dissertation (4.2) uses OpenGL.
 ///
 /// The buffer only says which triangles may hide a sample: those of the four cells around it. Whether one does is then decided with its own
 /// outline and plane, at the sample's own place. So neither the raster's coarseness nor a surface's slope needs a bias: creases, silhouettes and

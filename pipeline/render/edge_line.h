@@ -24,7 +24,7 @@ struct ViewedCorner {
 };
 
 /// The part of an edge that lies before the near plane and inside of the view, on its raster. Places s in [0, 1] along it are places in the
-/// image: 1/Z and cells are linear in s, places on the edge itself are not.
+/// image: 1/Z and cells are linear in s, places on the edge itself are not. Clipping and projection: section 2.2.
 struct EdgeLine {
   Eigen::Vector2f from = Eigen::Vector2f::Zero();  ///< cells.
   Eigen::Vector2f along = Eigen::Vector2f::Zero();

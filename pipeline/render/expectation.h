@@ -12,7 +12,7 @@
 
 namespace cgsr::render {
 
-/// A piece of a map's edge that the camera should see: glCorrect's expectation (Alg. 4.1, 4.2.2).
+/// A piece of a map's edge that the camera should see: glCorrect's expectation (4.2).
 struct VisiblePiece {
   std::uint32_t edge = 0;  ///< id: index in Map::edges.
   float from = 0.0F;       ///< where on the edge it begins and ends: 0 at vertices[0], 1 at vertices[1]; from < to.

@@ -12,6 +12,7 @@ namespace cgsr::render {
 
 /// What a lamp's centre sees: six square faces around it, whose cells each name every triangle that may throw a shadow there, however thin. Whether
 /// one stands between the lamp and a point is decided by the triangle itself, so that the size of the cells is a matter of cost alone.
+/// This is a light buffer (Haines and Greenberg 1986); the dissertation (5.2) draws shadow volumes only. Points are in W, metres.
 class LampView {
  public:
   /// \param map  outlives it.

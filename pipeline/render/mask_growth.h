@@ -6,7 +6,8 @@
 
 namespace cgsr::render {
 
-/// Grows masks of bytes, a bit a cell inside: a step costs a few instructions for 64 cells.
+/// Grows masks of bytes, a bit a cell inside: a step costs a few instructions for 64 cells. This is dilation (Serra 1982), for the masks of
+/// shaded regions (5.2). Masks lie row by row.
 class MaskGrowth {
  public:
   /// Steps that grow() can tell apart.

@@ -11,6 +11,7 @@ namespace cgsr::render {
 inline constexpr int kOpenglVersion = 1;
 
 /// What cgsr-opengl.so exports, with C linkage: who draws what should be visible himself loads neither Mesa nor its compiler.
+/// Ours; what it makes is the rendering of 4.2.
 inline constexpr const char* kOpenglVersionSymbol = "cgsr_opengl_version";  ///< int().
 inline constexpr const char* kMakeOpenglSymbol = "cgsr_make_opengl_expectation";
 using OpenglVersion = int();

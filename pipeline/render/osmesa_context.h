@@ -6,7 +6,7 @@
 
 namespace cgsr::render {
 
-/// OpenGL without a window: a context of OSMesa that draws into memory of its own. The only place that knows how Mesa is set up: llvmpipe,
+/// OpenGL (2.4) without a window: a context of OSMesa that draws into memory of its own. The only place that knows how Mesa is set up: llvmpipe,
 /// without threads of its own, with vectors of SSE's width, so that it draws alike on every machine.
 ///
 /// OpenGL's state belongs to the thread: make_current() before anything is drawn.

@@ -14,7 +14,7 @@
 
 namespace cgsr::render {
 
-/// 4.2.2's expectation as the dissertation draws it: with OpenGL, surfaces into the depth buffer, then every edge in a colour of its own with
+/// The expectation as the dissertation draws it (4.2): with OpenGL, surfaces into the depth buffer, then every edge in a colour of its own with
 /// the depth test on; the picture, read where it was drawn, says by its colours which pieces are visible.
 ///
 /// Surfaces are pushed back by their slope per pixel (glPolygonOffset), so that edges lie before the surfaces that they belong to. The reference

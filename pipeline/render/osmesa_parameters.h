@@ -4,7 +4,7 @@
 
 namespace cgsr::render {
 
-/// How visible edges are found with OpenGL.
+/// How visible edges are found with OpenGL (4.2).
 struct OsmesaParameters {
   int width = 640;
   int height = 480;

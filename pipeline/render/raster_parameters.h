@@ -4,7 +4,7 @@
 
 namespace cgsr::render {
 
-/// How visible edges are found with our own depth buffer.
+/// How visible edges are found with our own depth buffer. Ours; the dissertation (4.2) uses OpenGL.
 struct RasterParameters {
   int width = 320;
   int height = 240;

@@ -13,7 +13,8 @@
 
 namespace cgsr::render {
 
-/// What a camera can see, as planes in W: n . p + offset >= 0 inside. Left, right, top, bottom, near.
+/// What a camera can see, as planes in W: n . p + offset >= 0 inside. Left, right, top, bottom, near. This is the viewing frustum (2.2) without
+/// its far plane; offsets are in metres.
 struct Frustum {
   std::array<Eigen::Vector3f, 5> normal;
   std::array<float, 5> offset{};
@@ -37,6 +38,7 @@ enum class Preference : std::uint8_t {
 
 /// Bounding spheres in groups of neighbours: what is not in view is left out by the group, and where too much is in view the nearest groups
 /// and, of them, the things that are preferred are taken. Made once; select() allocates nothing.
+/// Culling by bounding volumes of a hierarchy (Clark 1976), here of two levels: the pruning that the dissertation (4.4) leaves open.
 class SphereGroups {
  public:
   struct Sphere {

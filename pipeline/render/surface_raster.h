@@ -13,7 +13,7 @@
 
 namespace cgsr::render {
 
-/// Draws a map's surfaces into a depth buffer and answers, for the pose that was drawn last, about single triangles at single places.
+/// Draws a map's surfaces into a depth buffer (4.2) and answers, for the pose that was drawn last, about single triangles at single places.
 /// Made for one map, which outlives it; allocates nothing after construction.
 class SurfaceRaster {
  public:

@@ -6,7 +6,7 @@
 
 namespace cgsr::render {
 
-/// A rectangle of pixels of a camera without lens, and a raster laid over it.
+/// A rectangle of pixels of a camera without lens, the view plane (2.2), and a raster laid over it.
 ///
 /// A lens may show more than a pinhole of the same focal lengths does at the same image size: the rectangle is the box around all that the lens
 /// shows. Without lens it is the image itself.
