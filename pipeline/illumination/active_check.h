@@ -57,6 +57,7 @@ struct CheckReport {
 };
 
 /// A lamp switched and switched back, and the image before compared with the one after: what that lamp alone does.
+/// Ours: the dissertation (5.1) takes the board and the probes as they were set up.
 ///
 /// open -> running: an image is kept, the other level is wanted; 'after', both are judged and the first level is wanted again; when that is
 /// settled it is over. A pair that says nothing (moved, not to be seen) is tried again. It knows no line, clock or thread: whoever runs it does as

@@ -9,7 +9,7 @@
 
 namespace cgsr::illumination {
 
-/// A lamp that many images agree on, world frame.
+/// A lamp that many images agree on: world frame, metres and square metres.
 struct KnownLamp {
   Eigen::Vector3d p_WL = Eigen::Vector3d::Zero();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
@@ -27,6 +27,7 @@ struct LampChange {
 /// Pulls the observations of many images together while the robot moves: each lamp is a Kalman filter over its place and over what was measured
 /// wrongly on the board (tips and the board's turn), which stays the same from image to image. So standing still does not feign accuracy, and turning
 /// around tells lamp from board.
+/// Ours: the dissertation (5.1) locates the lamp from one image. The filter (Kalman 1960) is an iterated one (Bell and Cathey 1993).
 ///
 /// Threads: one. Nothing is allocated.
 class LampFilter {

@@ -11,7 +11,8 @@ namespace cgsr::illumination {
 using Lane = Eigen::Array4f;
 inline constexpr int kLane = 4;
 
-/// The normal equations of Gauss and Newton over N unknowns, in single precision while they grow.
+/// The normal equations of Gauss and Newton over N unknowns, in single precision while they grow. Ours, for the fits that
+/// stand in for the lines of Alg. 5.1.
 template <int N>
 class LaneSums {
  public:

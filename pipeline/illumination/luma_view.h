@@ -8,6 +8,7 @@
 namespace cgsr::illumination {
 
 /// The brightness of an image as it lies there, YUYV or grey, read between pixels: no grey copy is made for the few places that are looked at.
+/// In place of Alg. 5.1, line 2.
 class LumaView {
  public:
   explicit LumaView(const ImageView& image)

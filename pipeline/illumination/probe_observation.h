@@ -48,8 +48,8 @@ struct ProbeObservation {
   int missing = 0;                                     ///< bit i: probe i stands on the board, but was not found.
 };
 
-/// Looks at the probes in every image: the board first, then each probe's surroundings, which follow from the board's geometry and not from
-/// constants. Works on a YUYV or grey image as it lies there and allocates nothing after construction.
+/// Looks at the probes in every image : the board first, then each probe's surroundings, which follow from the board's geometry and not from
+/// constants. Works on a YUYV or grey image as it lies there (Alg. 5.1) and allocates nothing after construction.
 ///
 /// Threads: one.
 class ProbeObserver {

@@ -8,6 +8,7 @@
 
 namespace cgsr::illumination {
 
+/// What counts as a shadow of a probe: section [probes.shadow] of a robot's file (Alg. 5.1).
 struct ShadowParameters {
   double lamp_radius_m = 0.05;
   double min_contrast = 2.0;
@@ -32,7 +33,8 @@ struct ShadowParameters {
   }
 };
 
-/// The shadow of one probe's tip on the board's plane, found by the outline of the whole shadow.
+/// The shadow of one probe's tip on the board's plane (the apex shadow of 5.1), found by the outline of the whole shadow. Board's frame,
+/// metres and square metres.
 struct ProbeShadow {
   Eigen::Vector2d p_BS = Eigen::Vector2d::Zero();
   /// Of what this image's noise and the base's place do to p_BS. With one line only it is large along that line.

@@ -9,6 +9,7 @@
 
 namespace cgsr::illumination {
 
+/// How edges of board and cones are looked for: section [probes.registration] of a robot's file.
 struct RegistrationParameters {
   double spacing_px = 10.0;
   double first_reach_px = 13.0;
@@ -30,7 +31,7 @@ struct RegistrationParameters {
   }
 };
 
-/// The camera against the board, as one image shows it.
+/// The camera against the board, as one image shows it: metres and radians, the board's frame B.
 struct Registration {
   bool good = false;
   geometry::Pose X_BC = geometry::Pose::Identity();
@@ -45,6 +46,7 @@ struct Registration {
 ///
 /// Gauss-Newton over six numbers; points along each expected line, each moved across it to the strongest edge nearby, and weighted down when
 /// it does not agree with the rest. Nothing is allocated.
+/// Control points along model edges: RAPiD (Harris and Stennett 1990). The dissertation (5.1) takes the camera's pose from its configuration.
 ///
 /// \param start  the last image's registration; the prior stays the mount.
 Registration register_board(const Board& board, const RegistrationParameters& parameters, const LumaView& image,

@@ -9,6 +9,7 @@
 namespace cgsr::illumination {
 
 /// The shadow of an upright rod, a pencil say, on a bright plane: the dark strip that begins at its base.
+/// Ours: a probe without silhouette lines, for photographs of other set-ups; its tip's shadow gives the ray of Eq. 5.1.
 ///
 /// Every direction from the base is followed as long as it is dark against both sides; the longest one wins, and the edge where it ends, to a
 /// fraction of a pixel, is the tip's shadow. What lies towards `top_px` is the rod itself.

@@ -47,8 +47,8 @@ struct ShadowSums {
   double weights = 0.0;
 };
 
-/// The brightness of the board about a probe, with the shadow that nine unknowns describe: both lines are tangents from the shadow of the tip to the base, and the brightness between them is
-/// less by the contrast.
+/// The brightness of the board about a probe, with the shadow that nine unknowns describe: both lines are tangents from the shadow of the tip
+/// to the base, and the brightness between them is less by the contrast. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
 class ShadowBrightness {
  public:
   /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about

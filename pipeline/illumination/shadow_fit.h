@@ -24,6 +24,7 @@ struct ShadowStart {
 /// Fits the shadow of a probe to the brightness along both of its lines: the shadow of the tip, the foot and radius of the base within what
 /// calibration leaves open, the shadow's contrast and the board's brightness, a plane. Edges are as soft as a lamp of the given radius makes
 /// them. No edge image is needed, all of a line counts, and a line that is half hidden is completed.
+/// Ours; the dissertation finds the lines by Canny and Hough (Alg. 5.1).
 ///
 /// Nothing is allocated.
 class ShadowFit {

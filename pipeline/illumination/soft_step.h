@@ -10,6 +10,7 @@ namespace cgsr::illumination {
 
 /// The normal distribution's integral and its density, out of a table: how the brightness goes from shadow to light across a soft edge. (A
 /// ball-shaped lamp's own curve differs by less than 0.02 when it has the same standard deviation, half the penumbra's half width.)
+/// Ours; the lamp of 5.1 is a point, whose shadows have sharp edges.
 class SoftStep {
  public:
   SoftStep() {

@@ -32,6 +32,7 @@ struct SwitchCheck {
 
 /// An active check of the probes: what a lamp alone does is the difference of an image with it and one without, in which no other light's
 /// shadow, no texture and no dirt is left. Where the lamp is known, its shadows say whether board and probes still are as calibrated.
+/// Ours; where the shadows should fall follows from the rays of Eq. 5.1 and 5.2.
 ///
 /// Allocates when constructed, not when it checks. Threads: one.
 class SwitchChecker {
