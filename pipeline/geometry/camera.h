@@ -6,7 +6,7 @@
 
 namespace cgsr::geometry {
 
-/// Pinhole with Brown's distortion, the terms and order of OpenCV's k1 k2 p1 p2 k3:
+/// Pinhole with Brown's distortion (Brown 1966), the terms and order of OpenCV's k1 k2 p1 p2 k3:
 ///   x = X/Z, y = Y/Z, r2 = x^2 + y^2, radial = 1 + k1 r2 + k2 r2^2 + k3 r2^3
 ///   x' = x radial + 2 p1 x y + p2 (r2 + 2 x^2),  y' = y radial + p1 (r2 + 2 y^2) + 2 p2 x y
 ///   u = fx x' + cx,  v = fy y' + cy

@@ -5,13 +5,13 @@
 
 namespace cgsr::geometry {
 
-/// A rigid transform: X_AB takes points from frame B to frame A (docs/frames.md).
+/// A rigid transform (the viewing transformation of 2.2; the camera pose X of 4.1): X_AB takes points from frame B to frame A (docs/frames.md).
 using Pose = Eigen::Isometry3d;
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// \return the rotation by |w| radians about w.
+/// \return the rotation by |w| radians about w (Rodrigues 1840).
 Eigen::Matrix3d rotation_of(const Eigen::Vector3d& w);
 
 /// \return the rotation vector of R, its angle in [0, pi].
@@ -27,10 +27,10 @@ Vector6d step_between(const Pose& from, const Pose& to);
 /// \return a robot's pose on the floor, X_WR.
 Pose pose_on_floor(double x_m, double y_m, double heading_rad);
 
-/// \return the angle from W's x axis to R's, positive to the left.
+/// \return the angle from W's x axis to R's, radians, positive to the left.
 double heading_of(const Pose& X_WR);
 
-/// \return how far R's x axis points below the horizon.
+/// \return how far R's x axis points below the horizon, radians.
 double pitch_of(const Pose& X_WR);
 
 /// The rotation brought back to an exact one, after many products.

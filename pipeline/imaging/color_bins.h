@@ -16,7 +16,8 @@ inline constexpr std::array kColorSpaceNames{
     Named<ColorSpace>{"yuv", ColorSpace::kYuv},
 };
 
-/// How a colour histogram divides colours: a colour space cut into per_channel^3 bins of equal width.
+/// How a colour histogram divides colours: a colour space cut into per_channel^3 bins of equal width (Alg. 3.1, line 21; 8 x 8 x 8
+/// of RGB in section 3.3.1).
 struct ColorBins {
   ColorSpace space = ColorSpace::kRgb;
   int per_channel = 8;

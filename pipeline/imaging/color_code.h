@@ -18,7 +18,7 @@ struct Rgb {
 ///   B = 1.164 (Y - 16) + 2.017 (U - 128)          (all over 255)
 Rgb rgb_of_yuv(double y, double u, double v);
 
-/// What the camera would have sent for a colour; not rounded. The inverse of rgb_of_yuv inside the gamut.
+/// What the camera would have sent for a colour, 0..255; not rounded. The inverse of rgb_of_yuv inside the gamut.
 struct Yuv {
   double y = 16.0;
   double u = 128.0;
@@ -32,6 +32,7 @@ Yuv yuv_of_rgb(const Rgb& rgb);
 ///
 /// 45 and not a power of two: it uses up the 16 bits, and being odd it puts the neutral 128 at the centre of a level, so that a grey
 /// stays grey and its noise does not flip between two levels. Steps are 8.0 of Y and 5.7 of U and V.
+/// Ours: the dissertation (3.3.1) counts histograms of RGB.
 inline constexpr int kYLevels = 32;
 inline constexpr int kChromaLevels = 45;
 inline constexpr int kColorCodes = kYLevels * kChromaLevels * kChromaLevels;

@@ -42,6 +42,7 @@ struct EdgeParameters {
 
 /// Canny's edges, made for a grey image of about 320x240: binomial blur, Sobel's gradient, only the steepest pixels across the edge kept
 /// (along the row or the column), and of those the ones that hang together with a strong one. The cost follows the edge pixels.
+/// The perception module of section 4.1 (Canny 1986).
 ///
 /// No edges within kBorder_px of the image's border. Nothing is allocated after construction.
 class EdgeDetector {
@@ -71,7 +72,7 @@ class EdgeDetector {
   [[nodiscard]] int width_px() const { return width_; }
   [[nodiscard]] int height_px() const { return height_; }
 
-  /// Standard deviation of the last image's noise, grey levels.
+  /// Standard deviation of the last image's noise, grey levels (Immerkaer 1996).
   [[nodiscard]] double noise() const { return noise_; }
 
   [[nodiscard]] std::size_t capacity() const { return edges_.size(); }

@@ -19,7 +19,7 @@ struct Spectrum {
 };
 
 /// Discrete Fourier transform of two real grids at once: X(k) = sum x(n) exp(-2 pi i k n / 32) along both axes.
-/// Cost: about 0.03 million instructions (SSE2). No allocation.
+/// Cost: about 0.03 million instructions (SSE2). No allocation. Radix 2 (Cooley and Tukey 1965), for the local tracker's filters.
 void transform(const RealGrid& a, const RealGrid& b, Spectrum& spectrum_a, Spectrum& spectrum_b);
 
 /// The inverse, scaled by 1/1024, of a spectrum whose grid is real. \param spectrum  is overwritten.

@@ -9,6 +9,7 @@ namespace cgsr::imaging {
 
 /// Sums over points from which a line of least squares across it (total least squares) follows. Sums of disjoint sets of points add, those of
 /// a stretch of a chain are the difference of two running sums. Points are counted from an origin near them.
+/// The fit is Pearson's (Pearson 1901), for the edge segments of section 4.1.
 struct LineMoments {
   double n = 0.0;
   double x = 0.0;

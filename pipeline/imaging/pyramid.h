@@ -29,7 +29,7 @@ struct PatchSize {
 };
 
 /// A YUYV image at falling resolutions, each level the 2x2 means of the one before, so that patches of any part of it can be taken at
-/// any size without aliasing. Level 0 has luma only and is read in place; from level 1 on there is chroma too.
+/// any size without aliasing (mip maps, Williams 1983). Level 0 has luma only and is read in place; from level 1 on there is chroma too.
 class Pyramid {
  public:
   static constexpr int kLevels = 5;
