@@ -57,7 +57,7 @@ struct FollowDecision {
   bool halt = false;        ///< the object is not seen: the forward goal is zero without a ramp.
 };
 
-/// Keeps an object centred and at a distance.
+/// Keeps an object centred and at a distance. Ours; the dissertation (3.3.2) says only that the robot follows a person.
 ///
 ///     bearing   b = atan((cx - u) / fx)                            u: column of the box's centre
 ///     distance  d = d_ref * size_ref / size                        size: root of the box's area; a side alone when the

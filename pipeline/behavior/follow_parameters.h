@@ -4,7 +4,7 @@
 
 namespace cgsr::behavior {
 
-/// How close, how fast, and what to do when the object is gone.
+/// How close, how fast, and what to do when the object is gone: parameters of Follow (3.3.2).
 struct FollowParameters {
   double distance_m = 1.5;
   double learned_distance_m = 0.0;

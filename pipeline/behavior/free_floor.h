@@ -8,6 +8,7 @@
 
 namespace cgsr::behavior {
 
+/// What is an obstacle, and how far the robot keeps from it.
 struct FreeFloorParameters {
   double min_clearance_m = 0.40;
   double min_obstacle_height_m = 0.03;
@@ -28,7 +29,8 @@ struct FreeFloorParameters {
 };
 
 /// Where on the floor a robot may be by its map, as a grid that is worked out once. What the map does not hold is not kept clear of: the robot
-/// has no obstacle sensor.
+/// has no obstacle sensor. Outside of the map nothing is free. Places are in the world frame, headings count from its x axis to the left.
+/// Ours: Alg. 5.2, lines 3 and 10, says nothing of the way. Obstacles grow by the clearance, so that the robot is a point (Lozano-Perez 1983).
 ///
 /// Threads: any number may ask. No query allocates.
 class FreeFloor {

@@ -12,6 +12,7 @@
 
 namespace cgsr::behavior {
 
+/// Where to go, and how: the parameters of Route.
 struct RouteParameters {
   std::string places_m;
   bool round = true;
@@ -55,7 +56,7 @@ struct Place {
 /// \return the places of a text like "1.5, 2; 3, 4.25"; or what is wrong with it: the piece, its number, what was expected.
 Result<std::vector<Place>> parse_places(std::string_view text);
 
-/// Where the robot believes to be on its floor.
+/// Where the robot believes to be on its floor: world frame, the heading from its x axis to the left.
 struct PlanarPose {
   bool known = false;
   double x_m = 0.0;
@@ -79,6 +80,7 @@ struct RouteDecision {
 };
 
 /// From place to place in the world, straight, by the pose that chapter 4 gives. It sees no obstacles: the way must be free.
+/// Ours: the dissertation has no such task; the pose is that of Fig. 5.1.
 ///
 /// Threads: one; decide allocates nothing.
 class Route {

@@ -92,7 +92,7 @@ struct SeekLampParameters {
   }
 };
 
-/// What chapter 5's stages say about the lamp, as the behaviour sees it.
+/// What chapter 5's stages say about the lamp, as the behaviour sees it: world frame, metres.
 struct LampBelief {
   bool has_board = false;
   bool readable = false;  ///< the board is where it should be: an image without a shadow then means something.
@@ -107,7 +107,7 @@ struct LampBelief {
   illumination::CheckState lamp_proof = illumination::CheckState::kNotThere;    ///< the shadows, by the room's.
 };
 
-/// The probes' place on the robot.
+/// The probes' place on the robot: ahead of the robot's origin, and above the floor.
 struct BoardPlace {
   double forward_m = 0.44;
   double height_m = 0.90;

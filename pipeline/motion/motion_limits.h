@@ -36,6 +36,7 @@ struct KeepInParameters {
 
 /// How fast the wheels may be told to go, and when they are told to stop. The robot is blind backwards and has no
 /// obstacle sensor: the defaults are slow and never backwards.
+/// Ours: the dissertation (3.3.2) gives no limits of its Segway RMP.
 struct MotionParameters {
   double max_forward_mps = 0.4;
   double max_backward_mps = 0.0;

@@ -16,6 +16,7 @@ namespace cgsr {
 inline constexpr Duration kMotionPeriod = seconds(0.010);
 
 /// Owns the base and tells it, 100 times a second, how to move: the goal within the limits, or zero.
+/// Ours: the dissertation (3.3.2) says only that motion runs on the same computer as vision.
 ///
 /// It starts disarmed. Arming is refused, with the cause, while anything stops the robot or the loop was late within the
 /// last second; where the base has a FaultLatch, arming re-arms it too. A stop is zero at once, without a ramp, and so is

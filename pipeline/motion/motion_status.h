@@ -12,7 +12,8 @@
 
 namespace cgsr {
 
-/// Why zero is commanded. The first that holds, in this order, is the one that is named.
+/// Why zero is commanded. The first that holds, in this order, is the one that is named. Ours, as the
+/// motion loop is.
 enum class StopCause : std::uint8_t {
   kNone,
   kStopRequested,  ///< latches. The process is told to stop.
@@ -35,7 +36,7 @@ std::string_view text(StopCause cause);
 /// \return whether the cause disarms the robot at once; the others only hold it.
 bool latches(StopCause cause);
 
-/// What vision wants, with the stamp of the image that it wants it for.
+/// The velocity that vision wants, robot frame, with the stamp of the image that it wants it for.
 struct Goal {
   hal::Twist twist;
   MonoTime stamp{};
