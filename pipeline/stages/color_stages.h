@@ -9,7 +9,7 @@
 
 namespace cgsr::stages {
 
-/// Chapter 3's three stages for one object.
+/// Chapter 3's three stages for one object (Alg. 3.2).
 struct ColorStages {
   std::unique_ptr<DecodeStage> decode;
   std::unique_ptr<SearchStage> search;

@@ -9,6 +9,7 @@
 namespace cgsr::stages {
 
 /// What the robot does about an image: asks its task, and passes on what stages require of the lamps.
+/// Ours; the tasks are those of the dissertation (3.3.2 and Alg. 5.2) and routes.
 ///
 /// Threads: one. Nothing here allocates.
 class DecideStage {

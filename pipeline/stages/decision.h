@@ -9,7 +9,7 @@
 
 namespace cgsr::stages {
 
-/// What a task did about one image.
+/// What a task (following, 3.3.2; Alg. 5.2) did about one image.
 struct Decision {
   behavior::Velocity goal;  ///< of the robot, [m/s] and [rad/s].
   bool halt = false;        ///< forward motion ends at once, without a ramp.

@@ -18,7 +18,8 @@ struct View {
   [[nodiscard]] ImageView grey() const;
 };
 
-/// Camera image to grey and colour labels, in one pass (imaging::reduce).
+/// Camera image to grey and colour labels, in one pass (imaging::reduce). Ours: the dissertation (Fig. 5.1)
+/// forwards the image frames themselves to its components.
 ///
 /// Threads: one. After construction nothing here allocates.
 class DecodeStage {

@@ -18,7 +18,7 @@ struct FrameInputs {
   Requests requests;                      ///< of the decision about the last image.
 };
 
-/// What one image led to: the last output of every stage, with its age.
+/// What one image led to: the last output of every stage (the components of Fig. 5.1), with its age.
 struct FrameResult {
   runtime::Aged<View> view;
   runtime::Aged<PoseEstimate> pose;

@@ -56,7 +56,7 @@ struct LocalizationSetup {
       self_mask;  ///< of the localizer's working size, not 0 where the robot sees itself; empty: nowhere.
 };
 
-/// Chapter 4: odometry carries the pose from exposure to exposure, images correct it.
+/// Chapter 4, the localization correction of Fig. 5.1: odometry carries the pose from exposure to exposure, images correct it.
 ///
 /// Threads: one. After construction nothing here allocates.
 class LocalizeStage {

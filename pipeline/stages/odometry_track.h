@@ -29,6 +29,7 @@ struct OdometryScales {
 };
 
 /// The base's odometry of the last second, scaled, so that an image can be told where the robot was when it was exposed.
+/// Ours: the dissertation (4.1) assumes a pose estimate and does not say how it follows the motion.
 ///
 /// Threads: one. Allocates nothing.
 class OdometryTrack {

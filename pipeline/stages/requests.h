@@ -9,6 +9,7 @@
 namespace cgsr::stages {
 
 /// What the decision about one image asks of the stages and devices at the next one.
+/// Ours; it serves Alg. 5.2 and the checks of the probes (5.1).
 struct Requests {
   bool track = true;                               ///< the object is to be looked for.
   std::optional<illumination::CheckedLamp> check;  ///< the lamp to be switched for a check of the probes' shadows.

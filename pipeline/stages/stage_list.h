@@ -32,6 +32,7 @@ struct StageRows {
 };
 
 /// The stages of a loop, in the order in which it runs them. A stage is one name in this list, one line in the loop, and one member of its result.
+/// Ours; the components of Fig. 5.1 are such stages.
 template <class... Workers>
 struct StageList {
   using Rows = StageRows<Workers...>;

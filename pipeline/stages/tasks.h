@@ -13,7 +13,7 @@ namespace cgsr::stages {
 inline constexpr Duration kMaxPoseAge = seconds(0.5);  ///< of a pose that a task drives by.
 inline constexpr Duration kMaxLampReportAge = seconds(0.5);
 
-/// Keeps the tracked object centred and at a distance.
+/// Keeps the tracked object centred and at a distance (3.3.2).
 class FollowTask final : public Task {
  public:
   /// \param camera  of the images that come: focal length and centre turn columns into bearings.
