@@ -47,6 +47,7 @@ enum class FollowReason : std::uint8_t {
 std::string_view text(FollowState state);
 std::string_view text(FollowReason reason);
 
+/// What to do about one image. The goal is in the robot's frame.
 struct FollowDecision {
   Velocity goal;
   FollowState state = FollowState::kWaiting;

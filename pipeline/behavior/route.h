@@ -48,6 +48,7 @@ struct RouteParameters {
   }
 };
 
+/// A place on the floor, world frame.
 struct Place {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -72,6 +73,7 @@ enum class RouteState : std::uint8_t {
 
 std::string_view text(RouteState state);
 
+/// What to do next. The goal is in the robot's frame.
 struct RouteDecision {
   Velocity goal;
   bool halt = false;  ///< the pose is not known: no ramp.

@@ -122,6 +122,7 @@ struct KeptArea {
   double max_y_m = 0.0;
 };
 
+/// Where in Alg. 5.2 the robot is; lines are those of the algorithm.
 enum class SeekState : std::uint8_t {
   kWaiting,      ///< where it is is not known yet: stands.
   kChecking,     ///< stands while the probes' own lamp is switched: are they as calibrated?
@@ -164,6 +165,7 @@ enum class SeekReason : std::uint8_t {
 };
 std::string_view text(SeekReason reason);
 
+/// What to do next. The goal is in the robot's frame.
 struct SeekDecision {
   Velocity goal;
   bool halt = false;  ///< no ramp.

@@ -12,6 +12,7 @@ namespace cgsr::color {
 inline constexpr int kFilterChannels = 12;
 using FilterFeatures = std::array<imaging::RealGrid, kFilterChannels>;
 
+/// lambda, r and the width of G in the formulas of CorrelationFilter, and how much of the first image stays.
 struct CorrelationParameters {
   double target_width = 0.0625;
   double regularisation = 0.001;

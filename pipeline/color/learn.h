@@ -13,6 +13,7 @@
 
 namespace cgsr::color {
 
+/// How an object is learned (Alg. 3.1), and what the multi-colour constraint (3.1.2) does.
 struct LearnParameters {
   imaging::ColorBins bins;
   LightParameters lights;

@@ -13,6 +13,7 @@
 
 namespace cgsr::color {
 
+/// What the local tracker looks at, and how fast it learns.
 struct LocalParameters {
   double padding = 2.0;
   double color_share = 0.3;

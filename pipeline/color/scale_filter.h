@@ -11,6 +11,7 @@
 
 namespace cgsr::color {
 
+/// lambda and r of the scale filter, as of CorrelationFilter, and the ratio of its scales.
 struct ScaleParameters {
   double step = 1.03;
   double regularisation = 0.01;

@@ -11,6 +11,7 @@
 
 namespace cgsr::color {
 
+/// What the bins of a histogram count: all the same, or more where they tell the object from its surroundings (Similarity).
 enum class BinWeights : std::uint8_t { kPlain, kSurroundings };
 
 inline constexpr std::array kBinWeightsNames{
@@ -79,6 +80,7 @@ struct SearchRequest {
   WorkBudget* budget = nullptr;  ///< asked before each group of windows that is looked into; nothing: unlimited.
 };
 
+/// A window and the learned histogram that it is nearest to (Alg. 3.2, lines 8 to 11).
 struct Match {
   Box box;                  ///< camera pixels, on the grid of strides.
   double divergence = 0.0;  ///< without the prior's penalty.
@@ -86,6 +88,7 @@ struct Match {
   int size = 0;             ///< index into the sizes, 0 the smallest.
 };
 
+/// What a search found: no match where no window is below max_divergence (Alg. 3.2, lines 14 to 18).
 struct SearchResult {
   std::array<Match, kMaxMatches> matches;  ///< best first. Ties: lower size, then light, then y, then x.
   int count = 0;
@@ -95,6 +98,7 @@ struct SearchResult {
   int examined = 0;  ///< of those had their histogram counted: the measure of work.
 };
 
+/// Why an image was not searched.
 enum class SearchFailure : std::uint8_t {
   kNoRoom,      ///< no window of any size fits into the image or region.
   kBadRequest,  ///< a size, candidate count, overlap or prior that is not finite or out of range.

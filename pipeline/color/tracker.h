@@ -87,6 +87,7 @@ struct DoubtParameters {
   }
 };
 
+/// How an object is followed: the search (Alg. 3.2), and what mode full adds to it.
 struct TrackParameters {
   TrackMode mode = TrackMode::kFull;
   double max_divergence = 0.40;

@@ -31,6 +31,7 @@ enum class CheckedLamp : std::uint8_t {
 };
 std::string_view name_of(CheckedLamp lamp);
 
+/// How far a check is, or how it ended.
 enum class CheckState : std::uint8_t {
   kNotThere,  ///< no line switches that lamp.
   kOpen,      ///< nobody asked for it yet.

@@ -45,6 +45,7 @@ struct LampParameters {
   }
 };
 
+/// What became of one lamp in one image.
 enum class LampStatus : std::uint8_t {
   kFound,      ///< a place with its covariance.
   kPartial,    ///< one line of one probe: the lamp lies in a plane.

@@ -30,6 +30,7 @@ struct ProbesParameters {
   }
 };
 
+/// Whether an image shows a shadow of the probes; else why not.
 enum class ObservationStatus : std::uint8_t {
   kSeen,           ///< at least one shadow.
   kNoShadow,       ///< the board is there, and no probe casts a shadow that can be seen.

@@ -10,6 +10,7 @@
 
 namespace cgsr::illumination {
 
+/// What a pair of images says about board and probes.
 enum class SwitchVerdict : std::uint8_t {
   kAgrees,         ///< every shadow that the lamp throws falls where board and probes say.
   kDisagrees,      ///< one does not: a probe stands elsewhere than its calibration says, or the lamp does.
@@ -22,6 +23,7 @@ enum class SwitchVerdict : std::uint8_t {
 };
 std::string_view name_of(SwitchVerdict verdict);
 
+/// A verdict with what it rests on.
 struct SwitchCheck {
   SwitchVerdict verdict = SwitchVerdict::kNoImage;
   std::array<bool, kMostProbes> seen{};

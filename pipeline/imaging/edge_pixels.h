@@ -23,6 +23,7 @@ struct EdgePixel {
   [[nodiscard]] float exact_y() const { return static_cast<float>(y) + (across_row() ? 0.0F : offset); }
 };
 
+/// What makes an edge: Canny's two thresholds.
 struct EdgeParameters {
   double min_contrast = 5.0;
   double min_strong_contrast = 10.0;

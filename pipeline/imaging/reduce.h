@@ -26,6 +26,7 @@ struct ReducedImage {
   std::vector<std::uint16_t> labels;
 };
 
+/// Why an image was not reduced.
 enum class ReduceFailure : std::uint8_t {
   kNotYuyv,    ///< the image is of another pixel format.
   kBadSize,    ///< smaller than 16x16, an odd width, or larger than the ReducedImage was made for.

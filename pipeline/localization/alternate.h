@@ -50,6 +50,7 @@ struct Estimate {
 /// From a belief as narrow as a followed pose's, what lies two pixels off is another edge rather than this one's error: SolverOptions::robust.
 inline constexpr double kFollowedRobust = 0.7;
 
+/// How one alternation of expectation and maximisation goes. Pixels are those of the working image.
 struct AlternateOptions {
   int rounds = 6;
   float radius_px = 24.0F;                 ///< of the first round.

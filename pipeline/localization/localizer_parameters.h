@@ -6,6 +6,7 @@
 
 namespace cgsr::localization {
 
+/// By which method a pose is corrected.
 enum class Method : std::uint8_t {
   kGlCorrect,  ///< visible edges only, Gaussian prior, gate, several starts where the prior is wide.
   kStronger,   ///< Alg. 4.1: every edge projected, no occlusion, no gate, one start.

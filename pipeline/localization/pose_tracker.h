@@ -60,6 +60,7 @@ struct PoseTrackerParameters {
   }
 };
 
+/// How far the pose is to be trusted.
 enum class TrackState : std::uint8_t {
   kUnsure,     ///< begun, no image has confirmed the pose yet.
   kTracking,   ///< the last images corrected the pose.
@@ -70,6 +71,7 @@ enum class TrackState : std::uint8_t {
 /// \return lower_case word.
 std::string_view name_of(TrackState state);
 
+/// The camera's pose at the last image. Its covariance is that of the step that geometry::moved() takes: metres and radians, axes of W.
 struct TrackedPose {
   TrackState state = TrackState::kUnsure;
   geometry::Pose X_WC = geometry::Pose::Identity();

@@ -20,6 +20,7 @@ struct LineDistance {
   bool end = false;     ///< along an edge, of its end: neither d1 nor d2, and no part of Solution::rms_px.
 };
 
+/// How the equation system is solved: as the dissertation does, or robustly.
 struct SolverOptions {
   bool paper =
       false;      ///< Eq. 4.4 and 4.5: numeric Jacobian, lambda = 1, units proportional to the variance, one full step.
@@ -28,6 +29,7 @@ struct SolverOptions {
       2.0;  ///< Cauchy's constant in sigmas: further out a distance counts less and less; 0: all count alike.
 };
 
+/// The pose that solve() found. Its information is that of the step that geometry::moved() takes, per m^2 and rad^2, axes of W.
 struct Solution {
   bool solved = false;  ///< false: fewer than three distances in front of the camera, or numbers that are none.
   geometry::Pose X_WC = geometry::Pose::Identity();

@@ -36,6 +36,7 @@ struct ShadeStageParameters {
   }
 };
 
+/// Whether there are shadow masks of an image; else why not.
 enum class ShadeStatus : std::uint8_t {
   kMasked,       ///< there are masks.
   kNoMap,        ///< what could throw shadows is not known.
