@@ -57,6 +57,10 @@ class ShadowVolumes {
   /// before prepared.
   bool prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget);
 
+  /// The lamp's place that is prepared, and the one that is being prepared; infinite: none.
+  [[nodiscard]] const Eigen::Vector3d& lamp() const { return p_WL_; }
+  [[nodiscard]] const Eigen::Vector3d& next_lamp() const { return p_WL_next_; }
+
   /// Stretches of edges that bound volumes, for the lamp that is prepared.
   [[nodiscard]] std::size_t silhouettes() const { return lamps_[now_].sides().size(); }
 

@@ -14,7 +14,6 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
-constexpr int kUnitsOfALook = 26;  // new masks cost about as much as so many units of work on the silhouettes
 constexpr std::size_t kMasks = 6;  // written, last, two on their way to housekeeping, one read there, one to spare
 
 render::ShadeMasks empty_masks(const render::ShadeParameters& parameters) {
@@ -35,7 +34,7 @@ std::string_view name_of(ShadeStatus status) {
     case ShadeStatus::kLampUnsure:
       return "the lamp is not known well enough";
     case ShadeStatus::kPreparing:
-      return "silhouettes of the lamp's new place are being computed";
+      return "a new place of the lamp is being prepared";
     case ShadeStatus::kPoseUnknown:
       return "pose not known";
     case ShadeStatus::kNoRoom:
@@ -67,36 +66,29 @@ std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const geometry
   if (lamp == nullptr) return ShadowMasks{ShadeStatus::kNoLamp, {}};
   const double lamp_sigma_m = largest_sigma(lamp->covariance);
   if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) return ShadowMasks{ShadeStatus::kLampUnsure, {}};
-  // A turn either works on the silhouettes of a new place or looks: both together would exceed what a turn may cost. Old silhouettes serve
-  // meanwhile for a lamp that may as well be where they are from.
-  const bool at_place = (lamp->p_WL - p_WL_kept_).norm() <= parameters_.max_lamp_shift_m;
-  const auto usable = [&] { return (lamp->p_WL - p_WL_kept_).norm() <= parameters_.max_lamp_sigma_m; };
-  const bool looks = at_place || (usable() && !looked_last_);
-  if (at_place) p_WL_prepared_ = kNowhere;
-  looked_last_ = looks || prepare(lamp->p_WL, budget);
-  if (!looked_last_) {
-    if (usable()) return std::nullopt;
+  // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way. A turn
+  // either works on new ones or looks: both together would exceed what a turn may cost.
+  const Eigen::Vector3d way = lamp->p_WL - volumes_.lamp();
+  const bool usable = way.norm() <= parameters_.max_lamp_sigma_m;
+  const bool looks = way.norm() <= parameters_.max_lamp_shift_m || (usable && !looked_last_);
+  looked_last_ = looks;
+  if (!looks) {
+    volumes_.prepare(place_to_prepare(lamp->p_WL), budget);
+    if (usable) return std::nullopt;
     return ShadowMasks{ShadeStatus::kPreparing, {}};
   }
-  const Eigen::Vector3d way = lamp->p_WL - p_WL_kept_;
   const render::ShadeErrors errors{lamp->covariance + way * way.transpose(), covariance};
   auto masks = masks_.take();
   if (!masks) return ShadowMasks{ShadeStatus::kNoRoom, {}};
-  masks.edit() = volumes_.look(X_WC, camera_, p_WL_kept_, errors);
+  masks.edit() = volumes_.look(X_WC, camera_, volumes_.lamp(), errors);
   return ShadowMasks{ShadeStatus::kMasked, std::move(masks)};
 }
 
-// Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way. What is being
-// computed is not begun anew for every image's estimate, only for one that lies elsewhere.
-bool ShadeStage::prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget) {
-  if (!((p_WL - p_WL_prepared_).norm() <= parameters_.max_lamp_sigma_m)) p_WL_prepared_ = p_WL;
-  if (!volumes_.prepare(p_WL_prepared_, budget)) return false;
-  p_WL_kept_ = p_WL_prepared_;
-  p_WL_prepared_ = kNowhere;
-  for (int unit = 0; unit < kUnitsOfALook; ++unit) {
-    if (!budget.grant()) return false;  // the masks come with the next turn
-  }
-  return true;
+// What is being prepared is not begun anew for every image's estimate, only where it lies elsewhere, or further off than what there is.
+Eigen::Vector3d ShadeStage::place_to_prepare(const Eigen::Vector3d& p_WL) const {
+  const double off_m = (p_WL - volumes_.next_lamp()).norm();
+  const bool goes_on = off_m <= parameters_.max_lamp_sigma_m && off_m <= (p_WL - volumes_.lamp()).norm();
+  return goes_on ? volumes_.next_lamp() : p_WL;
 }
 
 }  // namespace cgsr::stages

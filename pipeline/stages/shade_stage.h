@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -42,7 +41,7 @@ enum class ShadeStatus : std::uint8_t {
   kNoMap,        ///< what could throw shadows is not known.
   kNoLamp,       ///< no lamp is known: ambient light only.
   kLampUnsure,   ///< known too roughly.
-  kPreparing,    ///< the silhouettes of a new place of the lamp are being computed.
+  kPreparing,    ///< a new place of the lamp is being prepared, and what there is lies too far off.
   kPoseUnknown,  ///< the camera's pose is not known.
   kNoRoom,       ///< every mask buffer is still read by somebody.
 };
@@ -86,18 +85,14 @@ class ShadeStage {
                                const illumination::KnownLamp* lamp);
 
  private:
-  /// Works on the silhouettes of a new place. \return whether they are there, and units for a look at them are left.
-  bool prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget);
+  [[nodiscard]] Eigen::Vector3d place_to_prepare(const Eigen::Vector3d& p_WL) const;
 
   std::shared_ptr<const world::Map> map_;
   geometry::Camera camera_;
   ShadeStageParameters parameters_;
   render::ShadowVolumes volumes_;
   Pool<render::ShadeMasks> masks_;
-  inline static const Eigen::Vector3d kNowhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Vector3d p_WL_kept_ = kNowhere;      ///< whose silhouettes there are,
-  Eigen::Vector3d p_WL_prepared_ = kNowhere;  ///< and whose are being computed.
-  bool looked_last_ = false;  ///< the last turn gave masks: while silhouettes are computed, the next does not.
+  bool looked_last_ = false;  ///< the last turn gave masks: while a new place is prepared, the next does not.
 };
 
 }  // namespace cgsr::stages

@@ -88,6 +88,12 @@ class ShadeEdges : public ::testing::Test {
       : map_(std::make_shared<const world::Map>(*world::load_map(CGSR_SOURCE_DIR "/config/maps/home/map.obj"))),
         stage_(map_, camera(), {}) {}
 
+  /// One turn, in which the place of the lamp is prepared; from then on there are masks.
+  void prepare() {
+    EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kNow), aged(known_lamp(), kNow))->status,
+              ShadeStatus::kPreparing);
+  }
+
   static geometry::Camera camera() {
     geometry::Camera camera;
     camera.width_px = 640;
@@ -104,6 +110,7 @@ class ShadeEdges : public ::testing::Test {
 };
 
 TEST_F(ShadeEdges, MasksNeedThePoseOfThisImage) {
+  prepare();
   const auto lamp = aged(known_lamp(), kNow);
   EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kFrame), lamp)->status, ShadeStatus::kPoseUnknown);
   EXPECT_EQ(stage_.update(budget_, {}, lamp)->status, ShadeStatus::kPoseUnknown);
@@ -111,6 +118,7 @@ TEST_F(ShadeEdges, MasksNeedThePoseOfThisImage) {
 }
 
 TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
+  prepare();
   const auto pose = aged(known_pose(), kNow);
   EXPECT_EQ(stage_.update(budget_, pose, aged(known_lamp(), ShadeStage::kMaxLampAge))->status, ShadeStatus::kMasked);
   EXPECT_EQ(stage_.update(budget_, pose, aged(known_lamp(), ShadeStage::kMaxLampAge + kFrame))->status,
@@ -119,6 +127,7 @@ TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
 }
 
 TEST_F(ShadeEdges, WithoutARoomForNewMasksItSaysSo) {
+  prepare();
   std::vector<ShadowMasks> held;
   for (int i = 0; i < 20; ++i) {
     held.push_back(*stage_.update(budget_, aged(known_pose(), kNow), aged(known_lamp(), kNow)));
@@ -152,7 +161,8 @@ TEST_F(ShadeEdges, ANewPlaceOfTheLampIsPreparedOverImages) {
   lamp.lamp.p_WL.x() += 1.0;
   EXPECT_EQ(status(30), ShadeStatus::kPreparing) << "another lamp: the old ones would be wrong";
   EXPECT_EQ(status(30), ShadeStatus::kPreparing);
-  EXPECT_EQ(status(100'000), ShadeStatus::kMasked);
+  EXPECT_EQ(status(100'000), ShadeStatus::kPreparing) << "done, and its turn with it";
+  EXPECT_EQ(status(0), ShadeStatus::kMasked);
 }
 
 TEST(RouteEdges, ARobotStopsWhenItsPoseIsTooOld) {
