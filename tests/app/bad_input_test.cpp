@@ -82,6 +82,15 @@ TEST_F(BadInputFault, NumbersAndNamesOfTheCommandLine) {
   refused({"track", "--inptu", "x"}, "there is no option '--inptu' (did you mean '--input'?)");
   refused({"map", "info", "--scael=2", "x.obj"}, "there is no option '--scael' (did you mean '--scale'?)");
   refused({"trak"}, "there is no command 'trak' (did you mean 'track'?)");
+  refused({"trak", "--help"}, "there is no command 'trak'");
+  refused({"calibrate", "camra"},
+          "there is no command 'camra' (did you mean 'camera'?); cgsr calibrate --help names them");
+  refused({"calibrate", "camera", "--bord", "9x6"},
+          "there is no option '--bord' (did you mean '--board'?); cgsr calibrate camera --help names them");
+  refused({"sim", "render", "--wrold", "home"},
+          "there is no option '--wrold' (did you mean '--world'?); cgsr sim render --help names them");
+  refused({"reproduce", "--sede", "3"},
+          "there is no option '--sede' (did you mean '--seed'?); cgsr reproduce --help names them");
 }
 
 TEST_F(BadInputFault, NotAVideo) {

@@ -13,6 +13,7 @@
 
 #include "src/config/load.h"
 #include "src/option_checks.h"
+#include "src/parse_error.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/shaded_views.h"
@@ -229,8 +230,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {
-    constexpr int kUsage = 2;
-    return app.exit(wrong) == 0 ? 0 : kUsage;
+    return cgsr::app::report_parse_error(app, wrong, argc, argv);
   }
 
   try {

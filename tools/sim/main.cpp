@@ -9,6 +9,7 @@
 #include <opencv2/core/utility.hpp>
 
 #include "src/option_checks.h"
+#include "src/parse_error.h"
 #include "tools/sim/export_world.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"
@@ -17,8 +18,6 @@
 
 namespace cgsr::sim {
 namespace {
-
-constexpr int kUsage = 2;
 
 int complain(const Error& error) {
   fmt::print(stderr, "error: {}\n", error.message);
@@ -182,7 +181,7 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {
-    return app.exit(wrong) == 0 ? 0 : kUsage;
+    return cgsr::app::report_parse_error(app, wrong, argc, argv);
   }
   if (*render_command) return render(render_words, render_command->count("--time") > 0);
   if (*run_command) return run(run_words);
