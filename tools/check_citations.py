@@ -6,9 +6,10 @@ usage: check_citations.py [ROOT]
 A citation is an equation, algorithm, figure, table or section of the dissertation, a paper, or the word Ours for what is this project's own:
 Eq. 3.1, Alg. 4.1, Fig. 5.1, Table 5.1, (3.1.2), section 6.4.1.1, (Canny 1986), Ours.
 """
-import pathlib
 import re
 import sys
+
+from listed_problems import report
 
 ROOMS = [f"pipeline/{room}" for room in
          ("color", "localization", "illumination", "render", "behavior", "imaging", "geometry", "motion", "stages")]
@@ -66,12 +67,5 @@ def problems(root):
                 yield f"{file.relative_to(root).as_posix()}:{line}: {words}"
 
 
-def main():
-    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[1]
-    found = list(problems(root))
-    print("\n".join(found), end="\n" if found else "")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report(problems))

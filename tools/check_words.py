@@ -5,9 +5,10 @@ usage: check_words.py [ROOT]
 
 Reports each as file:line. docs/glossary.md and CHANGELOG.md may contain them. Only unambiguous words are listed.
 """
-import pathlib
 import re
 import sys
+
+from listed_problems import report
 
 WORDS = {
     r"WhereAmI": "localization stage",
@@ -39,12 +40,5 @@ def problems(root):
                 yield f"{path}:{number}: '{match.group()}': expected {list(WORDS.values())[match.lastindex - 1]}"
 
 
-def main():
-    root = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[1]
-    found = list(problems(root))
-    print("\n".join(found), end="\n" if found else "")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(report(problems))

@@ -1,20 +1,11 @@
 """tools/check_words.py names each listed word with its place, and lets the standard terms and the glossary pass."""
-import pathlib
-import subprocess
-import sys
-import tempfile
 import unittest
 
-CHECK = pathlib.Path(__file__).resolve().parents[2] / "tools" / "check_words.py"
+from check_test_case import CheckTestCase
 
 
-class CheckWords(unittest.TestCase):
-    def run_on(self, path, text):
-        with tempfile.TemporaryDirectory() as folder:
-            file = pathlib.Path(folder) / path
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-            return subprocess.run([sys.executable, CHECK, folder], capture_output=True, text=True)
+class CheckWords(CheckTestCase):
+    check = "check_words.py"
 
     def test_each_word_is_reported_with_its_line(self):
         for word, term in [("FloorBelief", "planar pose estimate"), ("name_of(x)", "to_string()"), ("by_tip", "jacobian"),
