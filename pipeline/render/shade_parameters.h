@@ -9,7 +9,7 @@ struct ShadeParameters {
   int width = 160;
   int height = 120;
   int finer = 2;
-  int lamp_cells = 256;
+  int lamp_cells = 384;
   double near_m = 0.05;
   double margin = 1e-5;
   double lift = 1e-3;
