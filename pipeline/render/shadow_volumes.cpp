@@ -28,8 +28,7 @@ bool same(const geometry::Camera& a, const geometry::Camera& b) {
 }  // namespace
 
 ShadowVolumes::ShadowVolumes(const world::Map& map, const ShadeParameters& parameters)
-    : map_(map),
-      parameters_(parameters),
+    : parameters_(parameters),
       views_(raster_of(parameters).width, raster_of(parameters).height),
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, raster_of(parameters)),

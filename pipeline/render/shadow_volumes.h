@@ -123,7 +123,6 @@ class ShadowVolumes {
   [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
 
-  const world::Map& map_;
   ShadeParameters parameters_;
   ViewKeeper views_;
   const View* view_;
