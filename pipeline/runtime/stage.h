@@ -125,12 +125,13 @@ class StageRunner {
     auto& last = stage.last_;
     if (begin_stage(stage.row_, stage.name_)) {
       try {
-        auto output = stage.work(budget_, inputs...);
-        if (output) {
+        if (auto output = stage.work(budget_, inputs...)) {
           last.value = *std::move(output);
           last.stamp = record_.stamp;
+          last.age = Duration::zero();
+        } else if (last.ever()) {
+          last.age = record_.stamp - last.stamp;
         }
-        if (last.ever() || output) last.age = record_.stamp - last.stamp;
         end_stage(stage.row_, StageOutcome::kRan);
         return last;
       } catch (const std::exception& error) {
