@@ -87,7 +87,7 @@ std::size_t stack_left() {
   return std::max(static_cast<std::size_t>(left), 2 * kStackMargin);
 }
 
-std::string_view name_of(SchedulingPolicy policy) {
+std::string_view to_string(SchedulingPolicy policy) {
   return policy == SchedulingPolicy::kFifo ? "SCHED_FIFO" : "SCHED_OTHER";
 }
 
@@ -156,12 +156,12 @@ std::string to_text(const std::vector<ThreadReport>& report) {
   auto out = fmt::appender(text);
   fmt::format_to(out, "{:<15} {:<11} {:>8} {:>9} {:>8}\n", "thread", "policy", "priority", "stack/KiB", "heap/KiB");
   for (const auto& row : report) {
-    fmt::format_to(out, "{:<15} {:<11} {:>8} {:>9} {:>8}\n", row.asked.name, name_of(row.policy), row.priority,
+    fmt::format_to(out, "{:<15} {:<11} {:>8} {:>9} {:>8}\n", row.asked.name, to_string(row.policy), row.priority,
                    row.asked.stack_bytes / 1024, row.asked.heap_bytes / 1024);
   }
   for (const auto& row : report) {
     if (!row.remark.empty()) {
-      fmt::format_to(out, "{} asked for {} {}: {}\n", row.asked.name, name_of(row.asked.policy), row.asked.priority,
+      fmt::format_to(out, "{} asked for {} {}: {}\n", row.asked.name, to_string(row.asked.policy), row.asked.priority,
                      row.remark);
     }
   }

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 
 #include "platform/error.h"
-#include "src/command.h"
-#include "src/parse_error.h"
-#include "src/version.h"
+#include "src/commands/command.h"
+#include "src/commands/parse_error.h"
+#include "src/commands/version.h"
 
 namespace cgsr::app {
 namespace {

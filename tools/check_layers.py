@@ -11,7 +11,8 @@ import re
 import sys
 
 HAL_INTERFACES = "hal"                     # hal/*.h
-CHAPTERS = ["pipeline/color", "pipeline/localization", "pipeline/illumination", "pipeline/person"]
+COLOR = [f"pipeline/color/{room}" for room in ("learn", "search", "track", "ball")]  # each may include those before it
+CHAPTERS = [*COLOR, "pipeline/localization", "pipeline/illumination", "pipeline/person"]
 ALLOWED = {
     "cmake": [],  # others' headers alone
     "platform": [],
@@ -29,14 +30,15 @@ ALLOWED = {
     "pipeline/geometry": ["platform"],
     "pipeline/world": ["platform", "pipeline/geometry"],
     "pipeline/render": ["platform", "pipeline/geometry", "pipeline/world"],
-    "pipeline/color": ["platform", "pipeline/geometry", "pipeline/imaging"],
+    **{room: ["platform", "pipeline/imaging", *COLOR[:i]] for i, room in enumerate(COLOR)},
     "pipeline/localization": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/world", "pipeline/render"],
     "pipeline/illumination": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/world", "pipeline/render"],
-    "pipeline/person": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/color"],
+    "pipeline/person": ["platform", "pipeline/geometry", "pipeline/imaging", *COLOR],
     "pipeline/behavior": ["platform", "pipeline/geometry", "pipeline/world", *CHAPTERS],
     "pipeline/stages": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/geometry", "pipeline/imaging", "pipeline/world",
                         "pipeline/render", "pipeline/behavior", *CHAPTERS],
     "pipeline/motion": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/behavior"],
+    "pipeline/calibration": ["platform", "pipeline/geometry", "pipeline/illumination", "pipeline/stages"],
     # the loop of Figure 5.1: the files directly in pipeline/
     "pipeline": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/stages"],
 }

@@ -99,9 +99,9 @@ std::string_view text(SeekReason reason) {
     case SeekReason::kBoardUnreadable:
       return "the probe board cannot be read";
     case SeekReason::kPoseLost:
-      return "where it is is not known any more";
+      return "robot pose lost";
     case SeekReason::kNoPose:
-      return "where it is is not known";
+      return "robot pose unknown";
     case SeekReason::kProbesAgree:
       return "the probes are as calibrated";
     case SeekReason::kProbesDoubted:

@@ -124,7 +124,7 @@ struct KeptArea {
 
 /// Where in Alg. 5.2 the robot is; lines are those of the algorithm.
 enum class SeekState : std::uint8_t {
-  kWaiting,      ///< where it is is not known yet: stands.
+  kWaiting,      ///< robot pose unknown yet: stands.
   kChecking,     ///< stands while the probes' own lamp is switched: are they as calibrated?
   kExploring,    ///< turns and moves until the probes throw a shadow (line 3).
   kApproaching,  ///< goes nearer to a lamp that stands low: a small angle measures better.

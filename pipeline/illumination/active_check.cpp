@@ -26,11 +26,11 @@ bool says_nothing(SwitchVerdict verdict) {
 
 }  // namespace
 
-std::string_view name_of(CheckedLamp lamp) {
+std::string_view to_string(CheckedLamp lamp) {
   return lamp == CheckedLamp::kProbeLamp ? "probe lamp" : "room lamp";
 }
 
-std::string_view name_of(CheckState state) {
+std::string_view to_string(CheckState state) {
   switch (state) {
     case CheckState::kNotThere:
       return "no line";

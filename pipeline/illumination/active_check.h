@@ -29,7 +29,7 @@ enum class CheckedLamp : std::uint8_t {
   kProbeLamp,  ///< the board's own: are board and probes still as calibrated?
   kRoomLamp,   ///< the one that was located: are the shadows its shadows?
 };
-std::string_view name_of(CheckedLamp lamp);
+std::string_view to_string(CheckedLamp lamp);
 
 /// How far a check is, or how it ended.
 enum class CheckState : std::uint8_t {
@@ -40,7 +40,7 @@ enum class CheckState : std::uint8_t {
   kFailed,  ///< shadows fall elsewhere, or there are none, or no two images could be compared.
   kFault,   ///< the line does not answer, or answers and the lamp does not switch.
 };
-std::string_view name_of(CheckState state);
+std::string_view to_string(CheckState state);
 
 /// The line of a lamp as it is known when an image comes.
 struct LineState {

@@ -118,20 +118,20 @@ BoardView::Derivative BoardView::derivative(const Vector3d& p_B) const {
   for (int k = 0; k < 3; ++k) {
     const double dx = (R_CB_(0, k) - x * R_CB_(2, k)) * over_z;
     const double dy = (R_CB_(1, k) - y * R_CB_(2, k)) * over_z;
-    d.by_point(0, k) = xx * dx + xy * dy;
-    d.by_point(1, k) = yx * dx + yy * dy;
+    d.J_point(0, k) = xx * dx + xy * dy;
+    d.J_point(1, k) = yx * dx + yy * dy;
   }
   return d;
 }
 
-Eigen::Matrix<double, 2, 6> BoardView::by_pose(const Derivative& derivative, const Vector3d& p_B) const {
+Eigen::Matrix<double, 2, 6> BoardView::pose_jacobian(const Derivative& derivative, const Vector3d& p_B) const {
   // p_C = R_CB exp(-w) (p_B - p_BC - step): by the place it is minus the derivative by the point, by the turn that times [p_B - p_BC]x.
   const Vector3d v = p_B - p_BC_;
   Eigen::Matrix<double, 2, 6> J;
   for (int row = 0; row < 2; ++row) {
-    const double a = derivative.by_point(row, 0);
-    const double b = derivative.by_point(row, 1);
-    const double c = derivative.by_point(row, 2);
+    const double a = derivative.J_point(row, 0);
+    const double b = derivative.J_point(row, 1);
+    const double c = derivative.J_point(row, 2);
     J(row, 0) = -a;
     J(row, 1) = -b;
     J(row, 2) = -c;

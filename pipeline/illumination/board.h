@@ -110,13 +110,14 @@ class BoardView {
 
   struct Derivative {
     Eigen::Vector2d at = Eigen::Vector2d::Zero();
-    Eigen::Matrix<double, 2, 3> by_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< d pixel / d p_B.
+    Eigen::Matrix<double, 2, 3> J_point = Eigen::Matrix<double, 2, 3>::Zero();  ///< d pixel / d p_B.
     bool in_front = false;
   };
   [[nodiscard]] Derivative derivative(const Eigen::Vector3d& p_B) const;
 
   /// d pixel / d step, the step being that of geometry::moved(X_BC, step), out of d pixel / d p_B.
-  [[nodiscard]] Eigen::Matrix<double, 2, 6> by_pose(const Derivative& derivative, const Eigen::Vector3d& p_B) const;
+  [[nodiscard]] Eigen::Matrix<double, 2, 6> pose_jacobian(const Derivative& derivative,
+                                                          const Eigen::Vector3d& p_B) const;
 
   [[nodiscard]] const Eigen::Vector3d& p_BC() const { return p_BC_; }
 

@@ -117,7 +117,7 @@ int ConeStrip::choose_samples(const LumaView& image, const BoardView& view,
     const Vector2d centre = frame.origin + along * frame.along;
     const auto d = view.derivative({centre.x(), centre.y(), 0.0});
     if (!d.in_front) continue;
-    const Vector2d across = d.by_point.leftCols<2>() * frame.outward;
+    const Vector2d across = d.J_point.leftCols<2>() * frame.outward;
     for (int k = 0; k < kAcross; ++k) {
       // The last ones further apart: how bright the board is.
       const double out_px = kFrom_px + kAcrossStep_px * (k < kAcross - 3 ? k : k + 3 * (k - kAcross + 4));
@@ -191,8 +191,8 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
     Lane edge_density;
     step_.at((out - f[kEdge] - f[kEdgeSlope] * along / end) / blur_m_, w, edge_density);
     Lane dark_share = Lane::Zero();
-    Lane by_tip_x = Lane::Zero();
-    Lane by_tip_y = Lane::Zero();
+    Lane J_tip_x = Lane::Zero();
+    Lane J_tip_y = Lane::Zero();
     if (shadow) {
       // The outline's place is the cone's own: where its edge is seen, its base is.
       const Lane q = out - f[kEdge] + radius;
@@ -206,19 +206,19 @@ ConeStrip::Sums ConeStrip::sum_up(const Unknowns& x, int count, bool with_shadow
         Lane density;
         step_.at(d * over_sigma, share, density);
         dark_share += share;
-        const Lane by_tip = f[kDark] * density * over_sigma * way;
-        by_tip_x += by_tip * inward[side].x();
-        by_tip_y += by_tip * inward[side].y();
+        const Lane J_tip = f[kDark] * density * over_sigma * way;
+        J_tip_x += J_tip * inward[side].x();
+        J_tip_y += J_tip * inward[side].y();
       }
       const auto lit = dark_share <= 0.0F;
-      by_tip_x = lit.select(0.0F, by_tip_x);
-      by_tip_y = lit.select(0.0F, by_tip_y);
+      J_tip_x = lit.select(0.0F, J_tip_x);
+      J_tip_y = lit.select(0.0F, J_tip_y);
       dark_share = dark_share.max(0.0F);
     }
     const Lane board = f[kLevel] + f[kSlopeAlong] * along + f[kSlopeOut] * out - f[kDark] * dark_share;
     const Lane cone = f[kCone] + f[kConeSlope] * along;
-    j[kTipAlong] = w * by_tip_x;
-    j[kTipOut] = w * by_tip_y;
+    j[kTipAlong] = w * J_tip_x;
+    j[kTipOut] = w * J_tip_y;
     j[kDark] = -w * dark_share;
     j[kLevel] = w;
     j[kSlopeAlong] = w * along;
@@ -354,8 +354,8 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   const Vector2d middle = frame.origin + 0.03 * frame.along;
   const auto d = view.derivative({middle.x(), middle.y(), 0.0});
   if (!d.in_front) return false;
-  const Vector2d along_px = (d.by_point.leftCols<2>() * frame.along).normalized();
-  const Vector2d across_px = d.by_point.leftCols<2>() * frame.outward;
+  const Vector2d along_px = (d.J_point.leftCols<2>() * frame.along).normalized();
+  const Vector2d across_px = d.J_point.leftCols<2>() * frame.outward;
   frame.px_per_m = std::abs(along_px.x() * across_px.y() - along_px.y() * across_px.x());
   if (frame.px_per_m < 50.0) return false;
   blur_m_ = static_cast<float>(kBlur_px / frame.px_per_m);
@@ -455,7 +455,7 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   const Vector3d p_BS(shadow.p_BS.x(), shadow.p_BS.y(), 0.0);
   const auto at = view.derivative(p_BS);
   if (!at.in_front) return false;
-  shadow.by_pose = -at.by_point.leftCols<2>().inverse() * view.by_pose(at, p_BS);
+  shadow.J_pose = -at.J_point.leftCols<2>().inverse() * view.pose_jacobian(at, p_BS);
   shadow.contrast = dark;
   shadow.support = 1.0;
   shadow.lines = 2;

@@ -50,8 +50,8 @@ Fit fit_lamp(const Board& board, double height_m, double height_sigma_m,
     JointCovariance V = JointCovariance::Identity();
     Joint residual = Joint::Zero();
     Eigen::Matrix<double, 4, 3> J = Eigen::Matrix<double, 4, 3>::Zero();
-    Eigen::Matrix<double, 4, 6> by_pose = Eigen::Matrix<double, 4, 6>::Zero();
-    Eigen::Matrix<double, 4, 3> by_turn = Eigen::Matrix<double, 4, 3>::Zero();
+    Eigen::Matrix<double, 4, 6> J_pose = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix<double, 4, 3> J_turn = Eigen::Matrix<double, 4, 3>::Zero();
     for (std::size_t i = 0; i < kMostProbes; ++i) {
       if (shadow[i] == nullptr) continue;
       const Vector3d& tip = board.probe[i].p_BA;
@@ -59,12 +59,12 @@ Fit fit_lamp(const Board& board, double height_m, double height_sigma_m,
       const auto model = shadow_of(p_BL, tip);
       const auto row = static_cast<Eigen::Index>(2 * i);
       residual.segment<2>(row) = shadow[i]->p_BS - model.p_BS;
-      J.middleRows<2>(row) = model.by_lamp * X_BR.linear();
-      by_pose.middleRows<2>(row) = shadow[i]->by_pose;
-      by_turn.middleRows<2>(row) = model.by_lamp * cross(p_BL);
-      V.block<2, 2>(row, row) = shadow[i]->covariance + tip_variance * model.by_tip * model.by_tip.transpose();
+      J.middleRows<2>(row) = model.J_lamp * X_BR.linear();
+      J_pose.middleRows<2>(row) = shadow[i]->J_pose;
+      J_turn.middleRows<2>(row) = model.J_lamp * cross(p_BL);
+      V.block<2, 2>(row, row) = shadow[i]->covariance + tip_variance * model.J_tip * model.J_tip.transpose();
     }
-    V += by_pose * registration * by_pose.transpose() + turn_variance * by_turn * by_turn.transpose();
+    V += J_pose * registration * J_pose.transpose() + turn_variance * J_turn * J_turn.transpose();
     const Eigen::LLT<JointCovariance> weigh(V);
     if (weigh.info() != Eigen::Success) return fit;
     Matrix3d H = J.transpose() * weigh.solve(J);
@@ -98,7 +98,7 @@ Vector3d start_from(const Board& board, double height_m, const ProbeShadow& shad
 
 }  // namespace
 
-std::string_view name_of(LampStatus status) {
+std::string_view to_string(LampStatus status) {
   switch (status) {
     case LampStatus::kFound:
       return "found";
@@ -153,12 +153,12 @@ ShadowModel shadow_of(const Vector3d& p_BL, const Vector3d& p_BA) {
   const double over = 1.0 / (p_BL.z() - a);
   const Vector2d across = (p_BA - p_BL).head<2>();
   model.p_BS = p_BA.head<2>() + across * (a * over);
-  model.by_lamp.setZero();
-  model.by_lamp(0, 0) = model.by_lamp(1, 1) = -a * over;
-  model.by_lamp.col(2) = -across * (a * over * over);
-  model.by_tip.setZero();
-  model.by_tip(0, 0) = model.by_tip(1, 1) = p_BL.z() * over;
-  model.by_tip.col(2) = across * (p_BL.z() * over * over);
+  model.J_lamp.setZero();
+  model.J_lamp(0, 0) = model.J_lamp(1, 1) = -a * over;
+  model.J_lamp.col(2) = -across * (a * over * over);
+  model.J_tip.setZero();
+  model.J_tip(0, 0) = model.J_tip(1, 1) = p_BL.z() * over;
+  model.J_tip.col(2) = across * (p_BL.z() * over * over);
   return model;
 }
 

@@ -53,7 +53,7 @@ enum class LampStatus : std::uint8_t {
   kDisagree,   ///< the probes' rays meet the lamp's height too far apart: the image is discarded.
   kBelowTips,  ///< the lamp's height is not above the probes' tips.
 };
-std::string_view name_of(LampStatus status);
+std::string_view to_string(LampStatus status);
 
 /// Where a lamp is, robot frame.
 struct LampEstimate {
@@ -91,8 +91,8 @@ std::optional<Eigen::Vector3d> nearest_to_rays(std::span<const TipShadow> shadow
 /// A tip's shadow as it follows from a lamp, with its derivatives.
 struct ShadowModel {
   Eigen::Vector2d p_BS;
-  Eigen::Matrix<double, 2, 3> by_lamp;
-  Eigen::Matrix<double, 2, 3> by_tip;
+  Eigen::Matrix<double, 2, 3> J_lamp;
+  Eigen::Matrix<double, 2, 3> J_tip;
 };
 ShadowModel shadow_of(const Eigen::Vector3d& p_BL, const Eigen::Vector3d& p_BA);
 

@@ -43,13 +43,13 @@ LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, co
   const auto model = shadow_of(p_BL, tip);
   prediction.p_BS = model.p_BS;
   const Matrix3d R_BW = (X_WR.linear() * board_.X_RB.linear()).transpose();
-  const Eigen::Matrix<double, 2, 3> by_world = model.by_lamp * R_BW;
-  prediction.by_state.leftCols<3>() = by_world;
-  prediction.by_state.middleCols<3>(3 + 3 * static_cast<Eigen::Index>(probe)) = model.by_tip;
-  prediction.by_state.rightCols<3>() = model.by_lamp * cross(before_turn);
+  const Eigen::Matrix<double, 2, 3> J_world = model.J_lamp * R_BW;
+  prediction.J_state.leftCols<3>() = J_world;
+  prediction.J_state.middleCols<3>(3 + 3 * static_cast<Eigen::Index>(probe)) = model.J_tip;
+  prediction.J_state.rightCols<3>() = model.J_lamp * cross(before_turn);
   // The robot moved by a step is the lamp moved the other way.
-  prediction.by_pose.leftCols<3>() = -by_world;
-  prediction.by_pose.rightCols<3>() = by_world * cross(Vector3d(x.head<3>()) - X_WR.translation());
+  prediction.J_pose.leftCols<3>() = -J_world;
+  prediction.J_pose.rightCols<3>() = J_world * cross(Vector3d(x.head<3>()) - X_WR.translation());
   prediction.valid = true;
   return prediction;
 }
@@ -60,9 +60,9 @@ double LampFilter::distance(const Track& track, std::size_t probe, const ProbeSh
   const auto prediction = predict(track.x, probe, X_WR);
   if (!prediction.valid) return std::numeric_limits<double>::infinity();
   const Vector2d residual = shadow.p_BS - prediction.p_BS;
-  const Matrix2d S = prediction.by_state * track.P * prediction.by_state.transpose() +
-                     prediction.by_pose * pose * prediction.by_pose.transpose() + shadow.covariance +
-                     shadow.by_pose * registration * shadow.by_pose.transpose();
+  const Matrix2d S = prediction.J_state * track.P * prediction.J_state.transpose() +
+                     prediction.J_pose * pose * prediction.J_pose.transpose() + shadow.covariance +
+                     shadow.J_pose * registration * shadow.J_pose.transpose();
   return residual.dot(S.inverse() * residual);
 }
 
@@ -76,8 +76,8 @@ void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMos
   Eigen::Matrix<double, kState, 4> gain = Eigen::Matrix<double, kState, 4>::Zero();
   for (int iteration = 0; iteration < iterations; ++iteration) {
     Joint residual = Joint::Zero();
-    Eigen::Matrix<double, 4, 6> by_pose = Eigen::Matrix<double, 4, 6>::Zero();
-    Eigen::Matrix<double, 4, 6> by_camera = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix<double, 4, 6> J_pose = Eigen::Matrix<double, 4, 6>::Zero();
+    Eigen::Matrix<double, 4, 6> J_camera = Eigen::Matrix<double, 4, 6>::Zero();
     Eigen::Matrix4d V = Eigen::Matrix4d::Identity();
     H.setZero();
     for (std::size_t i = 0; i < kMostProbes; ++i) {
@@ -86,12 +86,12 @@ void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMos
       if (!prediction.valid) return;
       const auto row = static_cast<Eigen::Index>(2 * i);
       residual.segment<2>(row) = shadow[i]->p_BS - prediction.p_BS;
-      H.middleRows<2>(row) = prediction.by_state;
-      by_pose.middleRows<2>(row) = prediction.by_pose;
-      by_camera.middleRows<2>(row) = shadow[i]->by_pose;
+      H.middleRows<2>(row) = prediction.J_state;
+      J_pose.middleRows<2>(row) = prediction.J_pose;
+      J_camera.middleRows<2>(row) = shadow[i]->J_pose;
       V.block<2, 2>(row, row) = shadow[i]->covariance;
     }
-    V += by_pose * pose * by_pose.transpose() + by_camera * registration * by_camera.transpose();
+    V += J_pose * pose * J_pose.transpose() + J_camera * registration * J_camera.transpose();
     const Eigen::Matrix4d S = H * track.P * H.transpose() + V;
     const Eigen::LLT<Eigen::Matrix4d> solver(S);
     if (solver.info() != Eigen::Success) return;

@@ -57,8 +57,8 @@ class LampFilter {
   };
   struct Prediction {
     Eigen::Vector2d p_BS = Eigen::Vector2d::Zero();
-    Eigen::Matrix<double, 2, kState> by_state = Eigen::Matrix<double, 2, kState>::Zero();
-    Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+    Eigen::Matrix<double, 2, kState> J_state = Eigen::Matrix<double, 2, kState>::Zero();
+    Eigen::Matrix<double, 2, 6> J_pose = Eigen::Matrix<double, 2, 6>::Zero();
     bool valid = false;
   };
 

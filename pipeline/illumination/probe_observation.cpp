@@ -26,7 +26,7 @@ double share_saturated(const Board& board, const LumaView& luma, double brightes
 
 }  // namespace
 
-std::string_view name_of(ObservationStatus status) {
+std::string_view to_string(ObservationStatus status) {
   switch (status) {
     case ObservationStatus::kSeen:
       return "seen";

@@ -39,7 +39,7 @@ enum class ObservationStatus : std::uint8_t {
   kNotRegistered,  ///< board and cones are not where the calibration says, or not to be seen.
   kSaturated,      ///< the board is brighter than the camera holds.
 };
-std::string_view name_of(ObservationStatus status);
+std::string_view to_string(ObservationStatus status);
 
 /// What one image tells about lamps.
 struct ProbeObservation {

@@ -40,7 +40,7 @@ struct ProbeShadow {
   /// Of what this image's noise and the base's place do to p_BS. With one line only it is large along that line.
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   /// d p_BS / d step of the camera (geometry::moved(X_BC, step)): the same camera saw the other probe.
-  Eigen::Matrix<double, 2, 6> by_pose = Eigen::Matrix<double, 2, 6>::Zero();
+  Eigen::Matrix<double, 2, 6> J_pose = Eigen::Matrix<double, 2, 6>::Zero();
   int lines = 0;  ///< 2: the tip is known; 1: the plane through lamp, tip and this line.
   std::array<bool, 2> line_seen{};
   double contrast = 0.0;  ///< grey levels.

@@ -41,7 +41,7 @@ constexpr int kRounds = static_cast<int>(kRound.size());
 struct EdgePoint {
   Vector2d normal;   // in the image, unit
   double offset_px;  // of the edge along the normal, from where it was expected
-  Vector6d by_pose;  // of that offset, by geometry::moved(X_BC, step)
+  Vector6d J_pose;   // of that offset, by geometry::moved(X_BC, step)
   double sigma2_px;  // what it tells, its line's common error included
   double soft2_px;   // what is far off, squared
   double place_px;   // the calibration's own error, as it is seen here
@@ -96,7 +96,7 @@ class Collector {
             int reach, const Round& round, std::array<EdgePoint, kMostPoints>& points)
       : board_(board), image_(image), view_(view), reach_(reach), round_(round), points_(points) {
     spacing_px_ = parameters.spacing_px * round.sparser;
-    least_contrast_ = parameters.min_contrast;
+    min_contrast_ = parameters.min_contrast;
     for (int i = 0; i < board_.probes; ++i) {
       const Probe& probe = board_.probe[static_cast<std::size_t>(i)];
       behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view_.p_BC(), probe.p_BA));
@@ -129,7 +129,7 @@ class Collector {
     // As many points as the middle's resolution asks for; board lines are straight but for the lens.
     const auto middle = view_.derivative(from + 0.5 * d);
     if (!middle.in_front) return;
-    const double length_px = (middle.by_point * d).norm();
+    const double length_px = (middle.J_point * d).norm();
     const int steps = std::clamp(static_cast<int>(length_px / spacing_px_), 2, 120);
     const int begin = count_;
     for (int i = 0; i < steps; ++i) {
@@ -168,16 +168,16 @@ class Collector {
     if (count_ >= kMostPoints) return;
     const auto d = view_.derivative(p_B);
     if (!d.in_front || !image_.holds(d.at.x(), d.at.y(), reach_ + 1.1)) return;
-    const Vector2d tangent = d.by_point * along;
+    const Vector2d tangent = d.J_point * along;
     const double length = tangent.norm();
     if (length < 1e-9) return;
     EdgePoint& point = points_[static_cast<std::size_t>(count_)];
     point.normal = Vector2d(-tangent.y(), tangent.x()) / length;
-    if (!find_edge(image_, d.at, point.normal, reach_, least_contrast_, point.offset_px)) return;
-    point.by_pose = (point.normal.transpose() * view_.by_pose(d, p_B)).transpose();
+    if (!find_edge(image_, d.at, point.normal, reach_, min_contrast_, point.offset_px)) return;
+    point.J_pose = (point.normal.transpose() * view_.pose_jacobian(d, p_B)).transpose();
     point.feature = feature;
     // How many pixels the calibration's own error is here.
-    point.place_px = board_.place_sigma_m * d.by_point.norm() / std::numbers::sqrt2;
+    point.place_px = board_.place_sigma_m * d.J_point.norm() / std::numbers::sqrt2;
     ++count_;
   }
 
@@ -201,7 +201,7 @@ class Collector {
   std::array<EdgePoint, kMostPoints>& points_;
   std::array<Outline, kMostProbes> behind_;  // what the cones hide from the camera
   double spacing_px_ = 0.0;
-  double least_contrast_ = 0.0;
+  double min_contrast_ = 0.0;
   int count_ = 0;
 };
 
@@ -239,9 +239,9 @@ Registration attempt(const Board& board, const RegistrationParameters& parameter
       std::array<int, 3> agree{};
       for (int i = 0; i < count; ++i) {
         const EdgePoint& point = points[static_cast<std::size_t>(i)];
-        const double residual = point.offset_px - point.by_pose.dot(total);
+        const double residual = point.offset_px - point.J_pose.dot(total);
         const double robust = point.soft2_px / (point.soft2_px + residual * residual);
-        accumulate(H, g, point.by_pose, residual, robust * robust / point.sigma2_px);
+        accumulate(H, g, point.J_pose, residual, robust * robust / point.sigma2_px);
         if (residual * residual < 2.25 * point.soft2_px) {
           ++agree[static_cast<std::size_t>(point.feature)];
           squares += residual * residual;

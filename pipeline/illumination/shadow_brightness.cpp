@@ -64,8 +64,8 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     const Lane qx = x - off_x_;
     const Lane qy = y - off_y_;
     Lane hidden = Lane::Constant(-1.0F);
-    std::array<Lane, 2> by_tip;
-    std::array<Lane, 2> by_foot;
+    std::array<Lane, 2> J_tip;
+    std::array<Lane, 2> J_foot;
     for (std::size_t side = 0; side < 2; ++side) {
       const Line& line = line_[side];
       const Lane d = qx * line.inward_x + qy * line.inward_y + radius_;
@@ -76,21 +76,21 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
       Lane density;
       step_->at(d * over_sigma, share, density);
       hidden += share;
-      const Lane by_d = -dark_ * density * over_sigma;
-      by_tip[side] = by_d * way;
-      by_foot[side] = by_d - by_tip[side];
+      const Lane J_d = -dark_ * density * over_sigma;
+      J_tip[side] = J_d * way;
+      J_foot[side] = J_d - J_tip[side];
     }
     const auto lit = hidden <= 0.0F;
     hidden = lit.select(0.0F, hidden);
     for (std::size_t side = 0; side < 2; ++side) {
-      by_tip[side] = lit.select(0.0F, by_tip[side]);
-      by_foot[side] = lit.select(0.0F, by_foot[side]);
+      J_tip[side] = lit.select(0.0F, J_tip[side]);
+      J_foot[side] = lit.select(0.0F, J_foot[side]);
     }
-    j[kTipX] = -by_tip[0] * line_[0].inward_x - by_tip[1] * line_[1].inward_x;
-    j[kTipY] = -by_tip[0] * line_[0].inward_y - by_tip[1] * line_[1].inward_y;
-    j[kFootX] = -by_foot[0] * line_[0].inward_x - by_foot[1] * line_[1].inward_x;
-    j[kFootY] = -by_foot[0] * line_[0].inward_y - by_foot[1] * line_[1].inward_y;
-    j[kRadius] = by_foot[0] + by_foot[1];
+    j[kTipX] = -J_tip[0] * line_[0].inward_x - J_tip[1] * line_[1].inward_x;
+    j[kTipY] = -J_tip[0] * line_[0].inward_y - J_tip[1] * line_[1].inward_y;
+    j[kFootX] = -J_foot[0] * line_[0].inward_x - J_foot[1] * line_[1].inward_x;
+    j[kFootY] = -J_foot[0] * line_[0].inward_y - J_foot[1] * line_[1].inward_y;
+    j[kRadius] = J_foot[0] + J_foot[1];
     j[kDark] = -hidden;
     j[kSlopeX] = x;
     j[kSlopeY] = y;

@@ -73,7 +73,7 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
     const Vector2d middle_B = outline.touch[side] + 0.4 * reach * line;
     const auto middle = view.derivative({middle_B.x(), middle_B.y(), 0.0});
     if (!middle.in_front) continue;
-    const double line_px = (middle.by_point.leftCols<2>() * line).norm() * (reach - begin);
+    const double line_px = (middle.J_point.leftCols<2>() * line).norm() * (reach - begin);
     int places = std::clamp(static_cast<int>(line_px / parameters_.spacing_px), 5, kMostAlong);
     if (choice.sparse) places = std::max(5, places / 2);
     const int samples_across = choice.sparse ? kAcross / 2 + 1 : kAcross;
@@ -82,7 +82,7 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
       const Vector2d centre = outline.touch[side] + along * line;
       const auto d = view.derivative({centre.x(), centre.y(), 0.0});
       if (!d.in_front) continue;
-      const Vector2d across = d.by_point.leftCols<2>() * outline.inward[side];
+      const Vector2d across = d.J_point.leftCols<2>() * outline.inward[side];
       const double m_per_px = 1.0 / across.norm();
       edges_.blur_m = kBlur_px * m_per_px;
       const double half = std::max(2.2 * m_per_px, 2.2 * penumbra_sigma(along)) + choice.slack_m;
@@ -233,7 +233,7 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
   shadow.covariance = covariance.topLeftCorner<2, 2>();
-  shadow.by_pose = -d.by_point.leftCols<2>().inverse() * view.by_pose(d, p_BS);
+  shadow.J_pose = -d.J_point.leftCols<2>().inverse() * view.pose_jacobian(d, p_BS);
   if (!with_tip) return is_shown(x, shadow);
   shadow.lines = 2;
   shadow.support = 1.0;

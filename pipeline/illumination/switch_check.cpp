@@ -19,7 +19,7 @@ constexpr int kAcross = 12;
 
 }  // namespace
 
-std::string_view name_of(SwitchVerdict verdict) {
+std::string_view to_string(SwitchVerdict verdict) {
   switch (verdict) {
     case SwitchVerdict::kAgrees:
       return "agrees";
@@ -110,15 +110,15 @@ SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, cons
     // The turn of the board moves the lamp in its frame.
     Eigen::Matrix3d cross;
     cross << 0, -p_BL.z(), p_BL.y(), p_BL.z(), 0, -p_BL.x(), -p_BL.y(), p_BL.x(), 0;
-    const Eigen::Matrix<double, 2, 3> by_turn = model.by_lamp * cross;
+    const Eigen::Matrix<double, 2, 3> J_turn = model.J_lamp * cross;
     double nearest = -1.0;
     for (int k = 0; k < found.count; ++k) {
       const ProbeShadow& shadow = found.shadow[static_cast<std::size_t>(k)];
       const Eigen::Matrix2d V = shadow.covariance +
-                                shadow.by_pose * registration.covariance * shadow.by_pose.transpose() +
-                                board_.place_sigma_m * board_.place_sigma_m * model.by_tip * model.by_tip.transpose() +
-                                board_.turn_sigma_rad * board_.turn_sigma_rad * by_turn * by_turn.transpose() +
-                                lamp_sigma_m * lamp_sigma_m * model.by_lamp * model.by_lamp.transpose();
+                                shadow.J_pose * registration.covariance * shadow.J_pose.transpose() +
+                                board_.place_sigma_m * board_.place_sigma_m * model.J_tip * model.J_tip.transpose() +
+                                board_.turn_sigma_rad * board_.turn_sigma_rad * J_turn * J_turn.transpose() +
+                                lamp_sigma_m * lamp_sigma_m * model.J_lamp * model.J_lamp.transpose();
       const Eigen::Vector2d off_m = shadow.p_BS - model.p_BS;
       const double chi2 = off_m.dot(V.inverse() * off_m);
       if (nearest >= 0.0 && chi2 >= nearest) continue;

@@ -21,7 +21,7 @@ enum class SwitchVerdict : std::uint8_t {
   kNotRegistered,  ///< board and cones are not to be found in the image with the lamp.
   kNoAnswer,       ///< the lamp's line does not answer: there are no two images.
 };
-std::string_view name_of(SwitchVerdict verdict);
+std::string_view to_string(SwitchVerdict verdict);
 
 /// A verdict with what it rests on.
 struct SwitchCheck {

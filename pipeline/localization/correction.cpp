@@ -16,7 +16,7 @@ Prior prior_at(const geometry::Pose& X_WC, const PriorSigmas& sigmas) {
   return {.X_WC = X_WC, .covariance = sigma.cwiseAbs2().asDiagonal()};
 }
 
-std::string_view name_of(Reason reason) {
+std::string_view to_string(Reason reason) {
   switch (reason) {
     case Reason::kNone:
       return "";

@@ -50,12 +50,12 @@ enum class Reason : std::uint8_t {
   kFarFromPrior,
   kUncertain,  ///< the matches leave a direction open.
   kResidual,   ///< the matches do not fit together.
-  kBadPrior,   ///< not finite, or its covariance is none.
-  kNoBudget,   ///< not even one look was granted.
+  kBadPrior,   ///< not finite, or its covariance is not positive definite.
+  kNoBudget,   ///< not even one unit of work was granted.
 };
 
 /// \return the words of a CSV's `reason` column: lower_case, "" for kNone.
-std::string_view name_of(Reason reason);
+std::string_view to_string(Reason reason);
 
 /// The answer to one image.
 struct Correction {

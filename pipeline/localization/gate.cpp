@@ -11,7 +11,7 @@ namespace cgsr::localization {
 namespace {
 
 constexpr float kMostLead = 0.3F;  // ahead of a pose that has next to nothing: more of it says no more
-// Agreement that some pose always has: where no rival was found it is the rival.
+// Agreement that some pose always has: where no alternative hypothesis was found it is the alternative hypothesis.
 constexpr float kChance = 0.2F;
 constexpr float kWorstCounts = 0.5F;   // of a room's pose that is right in one corner only the others tell
 constexpr float kPriorCounts = 0.02F;  // of a squared sigma from the prior: the farther off, the more must speak for it
@@ -60,10 +60,10 @@ float evidence_of(const Estimate& estimate, const Standing& standing) {
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters) {
   const bool narrow = !standing || standing->narrow;
-  const int least_expected = narrow ? kLeastFollowed : kLeastExpected;
-  const int least_matches = narrow ? std::min(kLeastFollowed, parameters.min_matches) : parameters.min_matches;
-  if (estimate.expected < least_expected) return Reason::kNothingExpected;
-  if (!estimate.solved || estimate.matches < least_matches) return Reason::kTooFewMatches;
+  const int min_expected = narrow ? kLeastFollowed : kLeastExpected;
+  const int min_matches = narrow ? std::min(kLeastFollowed, parameters.min_matches) : parameters.min_matches;
+  if (estimate.expected < min_expected) return Reason::kNothingExpected;
+  if (!estimate.solved || estimate.matches < min_matches) return Reason::kTooFewMatches;
   if (!standing && estimate.explained < parameters.min_tracking_matched_ratio) return Reason::kUnexplained;
   if (estimate.solution.rms_px > parameters.max_rms_px) return Reason::kResidual;
   if (estimate.prior_chi2 > parameters.max_prior_chi2) return Reason::kFarFromPrior;
@@ -77,9 +77,9 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
     const double more = static_cast<double>(evidence_of(estimate, *standing)) - parameters.min_evidence;
     place_most_m *= std::min(kSureMost, kSureShare + kSurePerEvidence * more);
   }
-  const double turn_most = parameters.max_sigma_deg * std::numbers::pi / 180.0;
+  const double max_turn = parameters.max_sigma_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= place_most_m) ||
-      !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= turn_most))
+      !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= max_turn))
     return Reason::kUncertain;
   return Reason::kNone;
 }

@@ -8,10 +8,10 @@
 #include <Eigen/Cholesky>
 
 #include "pipeline/localization/alternate.h"
+#include "pipeline/localization/alternative_hypothesis.h"
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/gate.h"
 #include "pipeline/localization/perceive.h"
-#include "pipeline/localization/rival.h"
 #include "pipeline/localization/search.h"
 #include "pipeline/render/depth_raster.h"
 
@@ -23,10 +23,10 @@ constexpr double kReachOfPrior = 2.5;  // sigmas of the prior that matching reac
 // Beside the prior's middle where its sigma moves the image more than a pose does that is followed: still one image's work.
 constexpr double kOneStart_px = 3.5;
 constexpr std::uint32_t kNearStarts = 8;
-constexpr double kNearSpread_px = 1.0;  // an axis of the prior that moves the image less needs no starts
-constexpr double kNearest = 1.8;        // sigmas
-constexpr double kNearRival_px = 4.0;   // a pose that is further off and as good leaves the answer open
-constexpr float kNearRadius = 0.6F;     // of the first start's
+constexpr double kNearSpread_px = 1.0;       // an axis of the prior that moves the image less needs no starts
+constexpr double kNearest = 1.8;             // sigmas
+constexpr double kNearAlternative_px = 4.0;  // a pose that is further off and as good leaves the answer open
+constexpr float kNearRadius = 0.6F;          // of the first start's
 
 // Shorter pieces are not matched (expected.cpp); a little of them may be longer from the pose that is found.
 constexpr double kLeastPiece_px = 5.0;
@@ -64,9 +64,9 @@ struct Localizer::State {
         expectation(given_expectation ? std::move(given_expectation) : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
         search(parameters, alternation, perception.camera()),
-        rival(parameters, alternation) {}
+        alternative(parameters, alternation) {}
 
-  /// \return nothing when the budget did not hold all the starts: without them nobody knows of a rival.
+  /// \return nothing when the budget did not hold all the starts: without them nobody knows of a alternative hypothesis.
   std::optional<Correction> from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
   [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
   /// \param standing  none: the pose was followed, not searched for.
@@ -78,7 +78,7 @@ struct Localizer::State {
   std::unique_ptr<render::Expectation> expectation;
   Alternation alternation;
   Search search;
-  Rival rival;
+  AlternativeHypothesis alternative;
 };
 
 Localizer::Localizer(const world::Map& map, const geometry::Camera& camera, const LocalizerParameters& parameters,
@@ -90,7 +90,7 @@ Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::carried(const geometry::Pose& X_C0C1) {
   state_->search.carried(X_C0C1);
-  state_->rival.carried(X_C0C1);
+  state_->alternative.carried(X_C0C1);
 }
 
 geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& covariance) const {
@@ -99,7 +99,7 @@ geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& covariance) con
 
 void Localizer::restart() {
   state_->search.stop();
-  state_->rival.forget();
+  state_->alternative.forget();
 }
 
 bool Localizer::searching() const {
@@ -159,11 +159,11 @@ std::optional<Correction> Localizer::State::from_near_starts(const Belief& belie
     return answer;
   }
   if (!parameters.search || narrow) {
-    if (parameters.search && best.solved) best = rival.better_than(best, belief, perception.edges(), budget);
+    if (parameters.search && best.solved) best = alternative.better_than(best, belief, perception.edges(), budget);
     judge(best, std::nullopt, answer);
     return answer;
   }
-  rival.forget();
+  alternative.forget();
   const geometry::Matrix6d metric = alternation.motion_metric(belief.prior.X_WC);
   const auto rank = [](const Estimate& estimate) {
     return estimate.solved ? evidence_of(estimate, Standing{}) : -10.0F;
@@ -187,7 +187,7 @@ std::optional<Correction> Localizer::State::from_near_starts(const Belief& belie
   for (const Estimate& other : found) {
     if (!other.solved) continue;
     const geometry::Vector6d step = geometry::step_between(best.solution.X_WC, other.solution.X_WC);
-    if (step.dot(metric * step) > kNearRival_px * kNearRival_px &&
+    if (step.dot(metric * step) > kNearAlternative_px * kNearAlternative_px &&
         !same_answer(best.solution.X_WC, other.solution.X_WC))
       lead = std::min(lead, rank(best) - rank(other));
   }
@@ -225,7 +225,7 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     if (at_once) {
       answer = *at_once;
     } else {
-      s.rival.forget();
+      s.alternative.forget();
       s.search.begin(belief);
     }
   }

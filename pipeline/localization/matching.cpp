@@ -91,7 +91,7 @@ void Matcher::find_candidates(std::uint32_t index, const ProjectedPiece& piece, 
   const int middle = SegmentTable::bin_of(piece.direction);
   const float dx = piece.direction.x();
   const float dy = piece.direction.y();
-  const float across_most = rules.radius_px;
+  const float max_across = rules.radius_px;
   for (int side = -1; side <= 1; side += 2) {
     if (piece.bright_side == -side) continue;
     const int first = middle - reach + (side < 0 ? kBins / 2 : 0) + kBins;
@@ -110,7 +110,7 @@ void Matcher::find_candidates(std::uint32_t index, const ProjectedPiece& piece, 
         const float along = std::abs(ex * dx + ey * dy);
         const float across = std::abs(ey * dx - ex * dy);
         // A perceived edge's middle may lie beyond the overlap, where the two lines are further apart.
-        if (across > across_most + rules.angle_rad * (half[i] + along) || along > piece.half_length + half[i]) continue;
+        if (across > max_across + rules.angle_rad * (half[i] + along) || along > piece.half_length + half[i]) continue;
         try_pair(index, piece, static_cast<std::uint32_t>(i), perceived.edges()[i], rules);
       }
       bin += end - begin;

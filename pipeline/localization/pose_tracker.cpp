@@ -34,7 +34,7 @@ bool shows_nothing(Reason reason) {
 
 }  // namespace
 
-std::string_view name_of(TrackState state) {
+std::string_view to_string(TrackState state) {
   switch (state) {
     case TrackState::kUnsure:
       return "unsure";

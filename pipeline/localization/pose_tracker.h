@@ -69,7 +69,7 @@ enum class TrackState : std::uint8_t {
 };
 
 /// \return lower_case word.
-std::string_view name_of(TrackState state);
+std::string_view to_string(TrackState state);
 
 /// The camera's pose at the last image. Its covariance is that of the step that geometry::moved() takes: metres and radians, axes of W.
 struct TrackedPose {

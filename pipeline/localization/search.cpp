@@ -20,7 +20,7 @@ constexpr double kSpread_px = 5.0;           // an axis of the prior that moves 
 constexpr double kNeighbourSpread_px = 1.5;  // ... no neighbours
 constexpr double kFarthest = 2.5;            // sigmas
 constexpr double kDistinct_px = 3.0;
-constexpr double kRival_px = 8.0;  // nearer than this the second-best pose would be hardly an error
+constexpr double kAlternative_px = 8.0;  // nearer than this the second-best pose would be hardly an error
 constexpr std::size_t kKept = 12;
 constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
 constexpr int kNeighbourRounds = 4;
@@ -255,7 +255,7 @@ void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
             [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
   best_ = judged[0];
   for (std::size_t i = 1; i < count; ++i) {
-    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kRival_px ||
+    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kAlternative_px ||
         same_answer(best_.solution.X_WC, judged[i].solution.X_WC))
       continue;
     lead_ = std::min(lead_, rank_of(best_) - rank_of(judged[i]));

@@ -12,14 +12,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// The largest cosine over the angles within `spread` of `angle`.
-double largest_cosine(double angle, double spread) {
+double max_cosine(double angle, double spread) {
   const double offset = std::abs(std::remainder(angle, 2.0 * kPi));  // from the direction whose cosine is 1
   return offset <= spread ? 1.0 : std::cos(offset - spread);
 }
 
 /// How far the robot may still go before it crosses one edge, `gap` ahead in the direction `edge_rad`.
 double way_to_edge(double gap, double edge_rad, double travel_rad, double spread) {
-  const double approach = largest_cosine(travel_rad - edge_rad, spread);
+  const double approach = max_cosine(travel_rad - edge_rad, spread);
   if (approach <= 0.0) return std::numeric_limits<double>::infinity();
   return std::max(0.0, gap) / approach;
 }

@@ -198,7 +198,7 @@ hal::Twist MotionLoop::towards_goal(MonoTime now, MotionStatus& status) const {
   next.left_radps = behavior::ramp(commanded_.left_radps, goal.left_radps, parameters_.max_turn_acceleration_radps2,
                                    parameters_.max_turn_acceleration_radps2, elapsed_s);
 
-  // What is said now holds until the next beat.
+  // What is said now holds until the next cycle.
   const double age_s = to_seconds(now - odometry_.stamp + kMotionPeriod);
   const double within = speed_within_area(next.forward_mps, odometry_, age_s, parameters_);
   status.keep_in_slowed = within != next.forward_mps;

@@ -12,7 +12,7 @@
 
 namespace cgsr {
 
-/// The motion loop's beat: who calls step() calls it this often.
+/// The motion loop's cycle: who calls step() calls it this often.
 inline constexpr Duration kMotionPeriod = seconds(0.010);
 
 /// Owns the base and tells it, 100 times a second, how to move: the goal within the limits, or zero.
@@ -40,7 +40,7 @@ class MotionLoop {
   /// Opens the base, which stands still.
   Result<void> start();
 
-  /// One beat. \param now  never falls; a step that repeats or precedes the last `now` counts as late.
+  /// One cycle. \param now  never falls; a step that repeats or precedes the last `now` counts as late.
   MotionStatus step(MonoTime now, const MotionInputs& inputs);
 
   /// Disarms, commands zero and closes the base. Idempotent; the destructor does it too.

@@ -20,7 +20,7 @@ std::vector<Sphere> spheres_of_edges(const world::Map& map) {
 }
 
 // Whatever of the view has at least this inverse depth lies within a distance.
-float least_w_within(float distance_m, const View& view) {
+float min_w_within(float distance_m, const View& view) {
   const double x = std::max(view.cx + 0.5, view.width - 0.5 - view.cx) / view.fx;
   const double y = std::max(view.cy + 0.5, view.height - 0.5 - view.cy) / view.fy;
   return static_cast<float>(std::sqrt(1.0 + x * x + y * y)) / std::max(distance_m, 1e-6F);
@@ -34,7 +34,7 @@ DepthRaster::DepthRaster(const world::Map& map, const RasterParameters& paramete
       views_(parameters.width, parameters.height),
       view_(&views_.of(geometry::Camera())),
       surfaces_(map, parameters),
-      edges_(spheres_of_edges(map), {.max_visited = parameters.max_visited, .chosen_most = parameters.max_edges},
+      edges_(spheres_of_edges(map), {.max_visited = parameters.max_visited, .max_chosen = parameters.max_edges},
              Preference::kLargest),
       buffer_(parameters.width, parameters.height) {
   // An edge that is crossed by many things falls into many pieces, but few do.
@@ -48,11 +48,10 @@ void DepthRaster::look(const geometry::Pose& X_WC, const geometry::Camera& camer
   draw(X_WC, camera);
   found_.clear();
   // Spheres are told by their radius over their distance.
-  const double least_edge = 0.5 * parameters_.min_piece_px / std::max(camera.fx_px, camera.fy_px);
+  const double min_edge = 0.5 * parameters_.min_piece_px / std::max(camera.fx_px, camera.fy_px);
   // Further away than every surface was drawn, nobody knows what is hidden.
-  least_w_ = least_w_within(surfaces_.reach_m(), *view_);
-  for (const std::uint32_t edge : edges_.select(surfaces_.frustum(), least_edge, surfaces_.reach_m()))
-    look_at_edge(edge);
+  min_w_ = min_w_within(surfaces_.reach_m(), *view_);
+  for (const std::uint32_t edge : edges_.select(surfaces_.frustum(), min_edge, surfaces_.reach_m())) look_at_edge(edge);
   keep_longest(std::min(pieces.capacity(), static_cast<std::size_t>(parameters_.max_pieces)));
   const auto earlier = [](const VisiblePiece& a, const VisiblePiece& b) {
     return a.edge != b.edge ? a.edge < b.edge : a.from < b.from;
@@ -81,7 +80,7 @@ void DepthRaster::look_at_edge(std::uint32_t name) {
   const world::Edge& edge = map_.edges[name];
   Line line;
   const auto near = static_cast<float>(parameters_.near_m);
-  if (!line.set(surfaces_.corner(edge.vertices[0]), surfaces_.corner(edge.vertices[1]), *view_, near, least_w_)) return;
+  if (!line.set(surfaces_.corner(edge.vertices[0]), surfaces_.corner(edge.vertices[1]), *view_, near, min_w_)) return;
   line.own = edge.surfaces;
   // An edge may lie behind by the tolerance: held a hair nearer, it need not be asked about at each sample.
   line.nearer = 1.0F / (1.0F - static_cast<float>(parameters_.tolerance));

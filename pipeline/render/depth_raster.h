@@ -61,7 +61,7 @@ class DepthRaster : public Expectation {
   std::vector<float> lengths_;
   Eigen::Vector2f cells_per_px_ = Eigen::Vector2f::Ones();  ///< of the last look's camera,
   Eigen::Vector2f first_cell_ = Eigen::Vector2f::Zero();    ///< where its pixel (0, 0) lies.
-  float least_w_ = 0.0F;                                    ///< 1/Z [1/m]: edges are not looked at any further away.
+  float min_w_ = 0.0F;                                      ///< 1/Z [1/m]: edges are not looked at any further away.
 };
 
 }  // namespace cgsr::render

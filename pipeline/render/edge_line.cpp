@@ -6,7 +6,7 @@
 
 namespace cgsr::render {
 
-bool EdgeLine::set(const ViewedCorner& a, const ViewedCorner& b, const View& view, float near_m, float least_w) {
+bool EdgeLine::set(const ViewedCorner& a, const ViewedCorner& b, const View& view, float near_m, float min_w) {
   if (a.w == 0.0F && b.w == 0.0F) return false;
 
   // The near plane, in three dimensions.
@@ -38,7 +38,7 @@ bool EdgeLine::set(const ViewedCorner& a, const ViewedCorner& b, const View& vie
       !clip(static_cast<float>(view.width) - 0.5F - begin.x(), -span.x(), s0, s1) ||
       !clip(begin.y() + 0.5F, span.y(), s0, s1) ||
       !clip(static_cast<float>(view.height) - 0.5F - begin.y(), -span.y(), s0, s1) ||
-      !clip(w_begin - least_w, w_end - w_begin, s0, s1)) {
+      !clip(w_begin - min_w, w_end - w_begin, s0, s1)) {
     return false;
   }
   // Places in the image go back to places on the edge by t / Z = s / Z1: both sides are linear in s.

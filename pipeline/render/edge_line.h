@@ -33,8 +33,8 @@ struct EdgeLine {
   float t0 = 0.0F;  ///< where on the edge s = 0 and s = 1 are.
   float t1 = 1.0F;
 
-  /// \param least_w  what has less inverse depth is too far away.  \return false: nothing of the edge is in view.
-  bool set(const ViewedCorner& a, const ViewedCorner& b, const View& view, float near_m, float least_w = 0.0F);
+  /// \param min_w  what has less inverse depth is too far away.  \return false: nothing of the edge is in view.
+  bool set(const ViewedCorner& a, const ViewedCorner& b, const View& view, float near_m, float min_w = 0.0F);
 
   [[nodiscard]] VisiblePiece piece(std::uint32_t edge, float begin, float end, const View& view) const;
 };

@@ -185,10 +185,10 @@ float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const 
   const Eigen::Vector3f arm = p_W - axes_.p_WC;
   const float depth = std::max(arm.dot(axes_.ahead), 0.2F);
   const auto variance = [&](const Eigen::Vector3f& way) {
-    geometry::Vector6d by_pose;
-    by_pose << way.cast<double>(), arm.cross(way).cast<double>();
-    const Eigen::Vector3d by_lamp = way.cast<double>() * static_cast<double>(times - 1.0F);
-    return by_pose.dot(errors_.pose * by_pose) + by_lamp.dot(errors_.lamp * by_lamp);
+    geometry::Vector6d J_pose;
+    J_pose << way.cast<double>(), arm.cross(way).cast<double>();
+    const Eigen::Vector3d J_lamp = way.cast<double>() * static_cast<double>(times - 1.0F);
+    return J_pose.dot(errors_.pose * J_pose) + J_lamp.dot(errors_.lamp * J_lamp);
   };
   const double by_map = static_cast<double>(times) * parameters_.map_sigma_m;
   const double sigma_m = std::sqrt(std::max(variance(axes_.right), variance(axes_.down)) + by_map * by_map);

@@ -78,8 +78,8 @@ void SphereGroups::Spheres::resize(std::size_t count) {
 SphereGroups::SphereGroups(std::span<const Sphere> spheres, const SelectionLimits& limits, Preference preference)
     : count_(spheres.size()),
       looked_at_most_(std::max(static_cast<std::size_t>(limits.max_visited), kGroup)),
-      chosen_most_(static_cast<std::size_t>(limits.chosen_most)),
-      weight_most_(static_cast<std::uint64_t>(limits.weight_most)),
+      chosen_most_(static_cast<std::size_t>(limits.max_chosen)),
+      weight_most_(static_cast<std::uint64_t>(limits.max_weight)),
       preference_(preference),
       index_(order_of(spheres)) {
   items_.resize(count_);
@@ -123,7 +123,7 @@ SphereGroups::SphereGroups(std::span<const Sphere> spheres, const SelectionLimit
 }
 
 std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum, double least, float within_m) {
-  const auto least_squared = static_cast<float>(least * least);
+  const auto min_squared = static_cast<float>(least * least);
   reach_m_ = kEverything;
   weight_in_view_ = 0;
   ranked_.clear();
@@ -141,12 +141,12 @@ std::span<const std::uint32_t> SphereGroups::select(const Frustum& frustum, doub
     const std::size_t first = group.index * kGroup;
     const std::size_t last = std::min(first + kGroup, count_);
     if (group_margin_[group.index] >= groups_.radius[group.index]) {  // all of it is in view
-      for (std::size_t i = first; i < last; ++i) keep_if_wanted(i, frustum, least_squared, within_m);
+      for (std::size_t i = first; i < last; ++i) keep_if_wanted(i, frustum, min_squared, within_m);
       continue;
     }
     margins_in(frustum, &items_.x[first], &items_.y[first], &items_.z[first], last - first, margin_.data());
     for (std::size_t i = first; i < last; ++i) {
-      if (margin_[i - first] >= -items_.radius[i]) keep_if_wanted(i, frustum, least_squared, within_m);
+      if (margin_[i - first] >= -items_.radius[i]) keep_if_wanted(i, frustum, min_squared, within_m);
     }
   }
   if (too_many()) keep_preferred(frustum);
@@ -162,14 +162,14 @@ void SphereGroups::nearest_groups() {
   std::sort(ranked_.begin(), ranked_.end(), [](const Ranked& a, const Ranked& b) { return a.index < b.index; });
 }
 
-void SphereGroups::keep_if_wanted(std::size_t place, const Frustum& frustum, float least_squared, float within_m) {
+void SphereGroups::keep_if_wanted(std::size_t place, const Frustum& frustum, float min_squared, float within_m) {
   const float x = items_.x[place] - frustum.p_WC.x();
   const float y = items_.y[place] - frustum.p_WC.y();
   const float z = items_.z[place] - frustum.p_WC.z();
   const float radius = items_.radius[place];
   const float squared = x * x + y * y + z * z;
   const float furthest = within_m + radius;
-  if (radius * radius < least_squared * squared || squared > furthest * furthest) return;
+  if (radius * radius < min_squared * squared || squared > furthest * furthest) return;
   place_.push_back(static_cast<std::uint32_t>(place));
   weight_in_view_ += weight_[place];
 }
@@ -187,14 +187,14 @@ void SphereGroups::keep_preferred(const Frustum& frustum) {
     ranked_.push_back(
         {preference_ == Preference::kNearest ? distance - radius : distance / std::max(radius, 1e-6F), place});
   }
-  std::size_t chosen_most = chosen_most_;
+  std::size_t max_chosen = chosen_most_;
   if (preference_ == Preference::kNearest) {
     const auto holds_camera = [](const Ranked& each) { return each.rank <= 0.0F; };
     const auto about = std::count_if(ranked_.begin(), ranked_.end(), holds_camera);
-    chosen_most = std::max(chosen_most, static_cast<std::size_t>(about));
+    max_chosen = std::max(max_chosen, static_cast<std::size_t>(about));
   }
-  if (ranked_.size() > chosen_most) {
-    const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(chosen_most);
+  if (ranked_.size() > max_chosen) {
+    const auto end = ranked_.begin() + static_cast<std::ptrdiff_t>(max_chosen);
     std::nth_element(ranked_.begin(), end, ranked_.end(), better);
     if (preference_ == Preference::kNearest) reach_m_ = std::min(reach_m_, end->rank);
     ranked_.erase(end, ranked_.end());

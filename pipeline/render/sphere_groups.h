@@ -26,8 +26,8 @@ Frustum frustum_of(const geometry::Pose& X_WC, const View& view, double near_m);
 /// How much one call of SphereGroups::select() looks at and answers with.
 struct SelectionLimits {
   int max_visited = 8192;  ///< spheres, whole groups of them, nearest first.
-  int chosen_most = std::numeric_limits<int>::max();
-  int weight_most = std::numeric_limits<int>::max();  ///< of the chosen together.
+  int max_chosen = std::numeric_limits<int>::max();
+  int max_weight = std::numeric_limits<int>::max();  ///< of the chosen together.
 };
 
 /// What is left where more is in view than the limits allow.
@@ -73,7 +73,7 @@ class SphereGroups {
   };
 
   void nearest_groups();
-  void keep_if_wanted(std::size_t place, const Frustum& frustum, float least_squared, float within_m);
+  void keep_if_wanted(std::size_t place, const Frustum& frustum, float min_squared, float within_m);
   void keep_preferred(const Frustum& frustum);
   void keep_within_weight();
   [[nodiscard]] bool too_many() const;

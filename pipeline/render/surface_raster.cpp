@@ -75,8 +75,8 @@ SurfaceRaster::SurfaceRaster(const world::Map& map, const RasterParameters& para
       parts_(parts_of(map, order_)),
       in_view_(spheres_of(map, order_, parts_),
                {.max_visited = parameters.max_visited,
-                .chosen_most = parameters.max_surfaces,
-                .weight_most = parameters.max_triangles},
+                .max_chosen = parameters.max_surfaces,
+                .max_weight = parameters.max_triangles},
                Preference::kNearest),
       corners_(map.vertices.size()),
       planes_(map.surfaces.size()),
@@ -113,8 +113,8 @@ const ViewedCorner& SurfaceRaster::corner(std::uint32_t vertex) {
 void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer) {
   place(X_WC, view);
   buffer.clear();
-  const double least_surface = 0.5 * parameters_.min_surface_cells / std::max(view_->fx, view_->fy);
-  for (const std::uint32_t chosen : in_view_.select(frustum_, least_surface)) {
+  const double min_surface = 0.5 * parameters_.min_surface_cells / std::max(view_->fx, view_->fy);
+  for (const std::uint32_t chosen : in_view_.select(frustum_, min_surface)) {
     const Part& part = parts_[chosen];
     const std::uint32_t name = part.surface;
     const world::Surface& surface = map_.surfaces[name];

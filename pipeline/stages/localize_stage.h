@@ -30,9 +30,9 @@ struct PoseEstimate {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     const bool map = self.has_map;
-    visit.text("pose", when(map, name_of(self.camera.state)), "state of the pose estimate");
+    visit.text("pose", when(map, to_string(self.camera.state)), "state of the pose estimate");
     visit.flag("corrected", when(map, self.camera.correction.corrected), "this image corrected the pose");
-    visit.text("reason", when(map, name_of(self.camera.correction.reason)), "why it did not");
+    visit.text("reason", when(map, to_string(self.camera.correction.reason)), "why it did not");
     visit.number("x_m", when(map, self.robot.x_m), {4}, "m", "the robot's place in the world");
     visit.number("y_m", when(map, self.robot.y_m), {4}, "m", "likewise");
     visit.number("heading_rad", when(map, self.robot.heading_rad), {5}, "rad",

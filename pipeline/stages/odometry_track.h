@@ -37,7 +37,7 @@ class OdometryTrack {
   OdometryTrack() = default;
   explicit OdometryTrack(const OdometryScales& scales) : scales_(scales) {}
 
-  /// Later than all before; what is not is passed by.
+  /// \param odometry  stamped later than all before; other messages are ignored.
   void add(const hal::Odometry& odometry);
 
   /// \return the odometry at a moment: between two reports on the straight way between them; after the last one, and at most kLongestAhead

@@ -13,7 +13,7 @@ namespace {
 
 /// Why a check speaks against what the probes say; empty when it does not.
 std::string_view doubt_of(const illumination::CheckReport& check, std::string_view failed) {
-  if (check.state == CheckState::kFault) return illumination::name_of(check.verdict);
+  if (check.state == CheckState::kFault) return illumination::to_string(check.verdict);
   return check.state == CheckState::kFailed ? failed : std::string_view();
 }
 
@@ -28,9 +28,9 @@ std::string_view reason_of(const LampReport& report) {
   if (report.switching()) return "a lamp is switched";
   if (const auto doubt = doubt_of(report.probes_check, "the probes failed their check"); !doubt.empty()) return doubt;
   if (const auto doubt = doubt_of(report.lamp_proof, "not the room lamp's shadow"); !doubt.empty()) return doubt;
-  if (report.observation != ObservationStatus::kSeen) return illumination::name_of(report.observation);
+  if (report.observation != ObservationStatus::kSeen) return illumination::to_string(report.observation);
   if (report.cone_missing) return "a cone is missing";
-  if (report.single_image.status != LampStatus::kFound) return illumination::name_of(report.single_image.status);
+  if (report.single_image.status != LampStatus::kFound) return illumination::to_string(report.single_image.status);
   return report.pose_known ? "" : "robot pose unknown";
 }
 

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "pipeline/color/object_search.h"
+#include "pipeline/color/track/object_search.h"
 #include "pipeline/runtime/aged.h"
 #include "pipeline/stages/decode_stage.h"
 #include "pipeline/stages/tracked_objects.h"

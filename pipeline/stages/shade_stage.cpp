@@ -9,7 +9,7 @@
 namespace cgsr::stages {
 namespace {
 
-double largest_sigma(const Eigen::Matrix3d& covariance) {
+double max_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
@@ -23,7 +23,7 @@ render::ShadeMasks empty_masks(const render::ShadeParameters& parameters) {
 
 }  // namespace
 
-std::string_view name_of(ShadeStatus status) {
+std::string_view to_string(ShadeStatus status) {
   switch (status) {
     case ShadeStatus::kMasked:
       return "masked";
@@ -64,7 +64,7 @@ std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const geometry
                                               const geometry::Matrix6d& covariance,
                                               const illumination::KnownLamp* lamp) {
   if (lamp == nullptr) return ShadowMasks{ShadeStatus::kNoLamp, {}};
-  const double lamp_sigma_m = largest_sigma(lamp->covariance);
+  const double lamp_sigma_m = max_sigma(lamp->covariance);
   if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) return ShadowMasks{ShadeStatus::kLampUnsure, {}};
   // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way. A turn
   // either works on new ones or looks: both together would exceed what a turn may cost.

@@ -45,7 +45,7 @@ enum class ShadeStatus : std::uint8_t {
   kPoseUnknown,  ///< the camera's pose is not known.
   kNoRoom,       ///< every mask buffer is still read by somebody.
 };
-std::string_view name_of(ShadeStatus status);
+std::string_view to_string(ShadeStatus status);
 
 /// What lies in shadow in an image.
 struct ShadowMasks {
@@ -54,7 +54,7 @@ struct ShadowMasks {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.text("shade", name_of(self.status), "whether there are shadow masks, or why not");
+    visit.text("shade", to_string(self.status), "whether there are shadow masks, or why not");
   }
 };
 

@@ -2,7 +2,7 @@
 
 namespace cgsr::stages {
 
-std::string_view name_of(LampLine line) {
+std::string_view to_string(LampLine line) {
   switch (line) {
     case LampLine::kProbeLamp:
       return "probe lamp";

@@ -17,7 +17,7 @@ enum class LampLine : std::uint8_t {
   kFillLight,  ///< on faces, under the camera (6.4.1.1).
 };
 inline constexpr std::size_t kLampLines = 3;
-std::string_view name_of(LampLine line);
+std::string_view to_string(LampLine line);
 
 /// What vision asks of the switch worker, and what that answers.
 struct SwitchRequest {

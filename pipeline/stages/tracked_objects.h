@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include "pipeline/color/integrated_tracker.h"
-#include "pipeline/color/object_search.h"
-#include "pipeline/color/tracker.h"
+#include "pipeline/color/ball/integrated_tracker.h"
+#include "pipeline/color/track/object_search.h"
+#include "pipeline/color/track/tracker.h"
 #include "platform/description.h"
 
 namespace cgsr::stages {

@@ -1,14 +1,9 @@
 #include "src/boot/boot_pose.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include <fmt/core.h>
-#include <opencv2/aruco.hpp>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "src/input/pose_file.h"
 #include "src/output/overlay.h"
@@ -18,9 +13,6 @@ namespace cgsr::boot {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSmallestSide_px = 20.0;
-constexpr double kLargestError_px = 1.0;  // of a corner, where the pose puts it
-constexpr double kAmbiguous = 0.6;        // the second pose that a square allows fits this well against the first
 
 localization::Prior prior_on_floor(const geometry::Pose& X_WC, double sigma_m, double sigma_rad) {
   auto sigmas = localization::PriorSigmas::floor();
@@ -29,53 +21,7 @@ localization::Prior prior_on_floor(const geometry::Pose& X_WC, double sigma_m, d
   return localization::prior_at(X_WC, sigmas);
 }
 
-/// Looking along the wall's normal, the marker's x runs to the right, its y down, its z into the wall.
-geometry::Pose marker_in_world(const config::StartMarker& marker) {
-  geometry::Pose X_WM = geometry::pose_on_floor(marker.x_m, marker.y_m, marker.facing_deg * kDegree);
-  X_WM.translation().z() = marker.z_m;
-  Eigen::Matrix3d axes;  // columns: x, y, z of the marker in a frame whose x looks out of the wall
-  axes << 0.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, -1.0, 0.0;
-  X_WM.linear() = X_WM.linear() * axes;
-  return X_WM;
-}
-
 }  // namespace
-
-std::optional<geometry::Pose> camera_by_marker(const config::StartMarker& marker, const geometry::Camera& camera,
-                                               const ImageView& image) {
-  if (marker.id < 0 || image.empty()) return std::nullopt;
-  std::vector<std::vector<cv::Point2f>> corners;
-  std::vector<int> ids;
-  auto parameters = cv::aruco::DetectorParameters::create();
-  parameters->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-  cv::aruco::detectMarkers(app::to_bgr(image), cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), corners, ids,
-                           parameters);
-  std::optional<std::size_t> seen;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    if (ids[i] != marker.id) continue;
-    if (seen) return std::nullopt;
-    seen = i;
-  }
-  if (!seen || cv::contourArea(corners[*seen]) < kSmallestSide_px * kSmallestSide_px) return std::nullopt;
-
-  const auto half = static_cast<float>(0.5 * marker.side_m);
-  const std::vector<cv::Point3f> square{{-half, half, 0}, {half, half, 0}, {half, -half, 0}, {-half, -half, 0}};
-  const cv::Matx33d K(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
-  const cv::Vec<double, 5> lens(camera.k1, camera.k2, camera.p1, camera.p2, camera.k3);
-  std::vector<cv::Vec3d> turns;
-  std::vector<cv::Vec3d> places;
-  std::vector<double> errors_px;
-  const int found = cv::solvePnPGeneric(square, corners[*seen], K, lens, turns, places, false, cv::SOLVEPNP_IPPE_SQUARE,
-                                        cv::noArray(), cv::noArray(), errors_px);
-  if (found < 1 || errors_px.front() > kLargestError_px) return std::nullopt;
-  if (found > 1 && errors_px[0] > kAmbiguous * errors_px[1]) return std::nullopt;
-  // IPPE's square has y up and z towards the camera; ours has y down and z into the wall.
-  Eigen::Matrix3d flip = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
-  geometry::Pose X_CM = geometry::Pose::Identity();
-  X_CM.linear() = geometry::rotation_of({turns[0][0], turns[0][1], turns[0][2]}) * flip;
-  X_CM.translation() = Eigen::Vector3d(places[0][0], places[0][1], places[0][2]);
-  return marker_in_world(marker) * X_CM.inverse();
-}
 
 Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camera& camera, const geometry::Pose& X_RC,
                            const ImageView& first_image) {
@@ -85,17 +31,20 @@ Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camer
     const auto X_WR = app::read_pose(start.file);
     if (!X_WR) return tl::unexpected(X_WR.error());
     boot.prior = prior_on_floor(*X_WR * X_RC, start.sigma_m, start.sigma_deg * kDegree);
-    boot.words = fmt::format("the last run's pose ({})", start.file);
+    boot.message = fmt::format("the last run's pose ({})", start.file);
     return boot;
   }
-  if (const auto X_WC = camera_by_marker(start.marker, camera, first_image)) {
+  const bool look_for_marker = start.marker.id >= 0 && !first_image.empty();
+  const auto X_WC =
+      look_for_marker ? calibration::camera_by_marker(start.marker, camera, app::to_bgr(first_image)) : std::nullopt;
+  if (X_WC) {
     boot.prior = prior_on_floor(*X_WC, start.sigma_m, start.sigma_deg * kDegree);
-    boot.words = fmt::format("marker {}", start.marker.id);
+    boot.message = fmt::format("marker {}", start.marker.id);
     return boot;
   }
   const geometry::Pose X_WR = geometry::pose_on_floor(start.x_m, start.y_m, start.heading_deg * kDegree);
   boot.prior = prior_on_floor(X_WR * X_RC, start.sigma_m, start.sigma_deg * kDegree);
-  boot.words = "the robot's file";
+  boot.message = "the robot's file";
   return boot;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 
 #include "pipeline/geometry/camera.h"
 #include "pipeline/localization/correction.h"
@@ -15,18 +14,13 @@ namespace cgsr::boot {
 /// the file in which the last run left its pose, a marker of known place in the first image, the robot's configuration.
 struct BootPose {
   localization::Prior prior;
-  std::string words;  ///< where it comes from, for people.
+  std::string message;  ///< where it comes from, for people.
 };
 
 /// \param first_image  YUYV; empty: no marker is looked for.  \param camera  of that image's size.
 /// \return the pose; or what is wrong with the last run's file, with its line. A marker that is not seen is no error.
 Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camera& camera, const geometry::Pose& X_RC,
                            const ImageView& first_image);
-
-/// \return X_WC as a marker of known size and place shows it (an ArUco marker, 4x4, of OpenCV's DICT_4X4_50); nothing when it is not seen,
-/// is seen twice, or is so small or so oblique that its pose is not certain.
-std::optional<geometry::Pose> camera_by_marker(const config::StartMarker& marker, const geometry::Camera& camera,
-                                               const ImageView& image);
 
 /// Leaves the robot's pose on its floor for the next run, X_WR; whole or not at all.
 Result<void> leave_pose(const std::filesystem::path& file, const geometry::Pose& X_WR);

@@ -60,9 +60,9 @@ class LiveLoops {
   }
 
   void motion() {
-    Periodic beat(clock_, kMotionPeriod);
+    Periodic cycle(clock_, kMotionPeriod);
     while (!stop_.requested()) {
-      beat.wait();
+      cycle.wait();
       motion_.step(clock_.now());
       heartbeats.beat(motion_beat_, clock_.now());
     }

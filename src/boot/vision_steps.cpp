@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/color/learn.h"
-#include "pipeline/color/model_file.h"
+#include "pipeline/color/learn/learn.h"
+#include "pipeline/color/learn/model_file.h"
 #include "pipeline/localization/perceive.h"
 #include "pipeline/stages/color_stages.h"
 #include "pipeline/stages/self_mask.h"
@@ -65,7 +65,7 @@ Result<color::ColorModel> loaded_or_learned(RobotState& state) {
   const color::Sample sample{image->view(), box};
   auto learned = color::learn({&sample, 1}, state.setup.config.color.learn);
   if (!learned) return tl::unexpected(learned.error());
-  state.report.notes.push_back("learned from the first image: " + learned->words);
+  state.report.notes.push_back("learned from the first image: " + learned->message);
   return std::move(learned->model);
 }
 
@@ -196,7 +196,7 @@ Result<void> make_localization(RobotState& state) {
   const Calibration& calibration = state.calibration;
   auto boot = boot_pose(known.start, *calibration.camera, calibration.X_RC, first_image->view());
   if (!boot) return tl::unexpected(boot.error());
-  state.report.notes.push_back("begins where " + boot->words + " says");
+  state.report.notes.push_back("begins where " + boot->message + " says");
   auto expectation = make_expectation(*state.vision.map, known.localizer);
   if (!expectation) return tl::unexpected(expectation.error());
   stages::LocalizationSetup setup;

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "pipeline/color/learn.h"
-#include "pipeline/color/tracker.h"
+#include "pipeline/color/learn/learn.h"
+#include "pipeline/color/track/tracker.h"
 #include "platform/error.h"
 
 namespace cgsr::config {

@@ -8,7 +8,7 @@
 #include "hal/rmp/parameters.h"
 #include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
-#include "pipeline/color/integrated_tracker.h"
+#include "pipeline/color/ball/integrated_tracker.h"
 #include "pipeline/illumination/lamp.h"
 #include "pipeline/motion/motion_limits.h"
 #include "pipeline/stages/odometry_track.h"

@@ -5,34 +5,13 @@
 
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
+#include "pipeline/calibration/marker.h"
 #include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/pose_tracker.h"
 #include "platform/parameters.h"
 #include "src/config/prior.h"
 
 namespace cgsr::config {
-
-/// An ArUco marker on a wall whose place is known.
-struct StartMarker {
-  int id = -1;
-  double side_m = 0.15;
-  double x_m = 0.0;
-  double y_m = 0.0;
-  double z_m = 1.0;
-  double facing_deg = 0.0;
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit.number("id", self.id, {-1, 49}, "",
-                 "The number of the marker among the 4x4 markers (OpenCV's DICT_4X4_50); -1 means none.");
-    visit.number("side_m", self.side_m, {0.01, 2.0}, "m", "The side of the marker's black square.");
-    visit.number("x_m", self.x_m, {-10000.0, 10000.0}, "m", "The x coordinate of the marker's centre in the world.");
-    visit.number("y_m", self.y_m, {-10000.0, 10000.0}, "m", "The y coordinate of the marker's centre in the world.");
-    visit.number("z_m", self.z_m, {-100.0, 100.0}, "m", "The height of the marker's centre above the floor.");
-    visit.number("facing_deg", self.facing_deg, {-360.0, 360.0}, "deg",
-                 "The direction of the marker's normal, from the world's x axis.");
-  }
-};
 
 /// Where the robot stands at boot, and how well that is known.
 struct StartPose {
@@ -42,7 +21,7 @@ struct StartPose {
   double sigma_m = 0.15;
   double sigma_deg = 4.0;
   std::string file;
-  StartMarker marker;
+  calibration::Marker marker;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

@@ -88,7 +88,7 @@ cv::Mat draw_preview(std::span<const color::Sample> samples, const color::Learne
                            tiles_top + static_cast<int>(i / kTilesPerRow) * (kTile_px + kGap_px));
     tile.copyTo(sheet(cv::Rect(corner, tile.size())));
   }
-  write_words(sheet, learned.words, words_top);
+  write_words(sheet, learned.message, words_top);
   return sheet;
 }
 

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 
 namespace cgsr::app {
 

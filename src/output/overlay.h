@@ -7,7 +7,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "pipeline/color/light.h"
+#include "pipeline/color/learn/light.h"
 #include "pipeline/render/shadow_volumes.h"
 #include "platform/box.h"
 #include "platform/image_view.h"

@@ -46,9 +46,9 @@ void LogSink::log_task(const ImageReport& report) {
 void LogSink::log_pose(const ImageReport& report) {
   const stages::PoseEstimate& pose = report.frame.pose.value;
   if (!pose.has_map || pose.camera.state == pose_) return;
-  const auto reason = name_of(pose.camera.correction.reason);
-  spdlog::info("image {}: pose: {} -> {}{}{}", report.record.image_sequence, name_of(pose_), name_of(pose.camera.state),
-               reason.empty() ? "" : ": ", reason);
+  const auto reason = to_string(pose.camera.correction.reason);
+  spdlog::info("image {}: pose: {} -> {}{}{}", report.record.image_sequence, to_string(pose_),
+               to_string(pose.camera.state), reason.empty() ? "" : ": ", reason);
   pose_ = pose.camera.state;
 }
 
@@ -58,15 +58,16 @@ void LogSink::log_check(const ImageReport& report, illumination::CheckedLamp lam
   if (check.state == before) return;
   before = check.state;
   if (!ended(check.state)) return;
-  spdlog::info("image {}: check by the {}: {} ({})", report.record.image_sequence, name_of(lamp), name_of(check.state),
-               name_of(check.verdict));
+  spdlog::info("image {}: check by the {}: {} ({})", report.record.image_sequence, to_string(lamp),
+               to_string(check.state), to_string(check.verdict));
 }
 
 void LogSink::log_lamp(const ImageReport& report) {
   const stages::LampReport& lamp = report.frame.lamp.value;
   const auto image = report.record.image_sequence;
   if (report.frame.shade.value.status != shade_) {
-    spdlog::info("image {}: shadow masks: {} -> {}", image, name_of(shade_), name_of(report.frame.shade.value.status));
+    spdlog::info("image {}: shadow masks: {} -> {}", image, to_string(shade_),
+                 to_string(report.frame.shade.value.status));
     shade_ = report.frame.shade.value.status;
   }
   if (!lamp.has_board) return;
@@ -75,7 +76,7 @@ void LogSink::log_lamp(const ImageReport& report) {
   const bool visible = lamp.observation == illumination::ObservationStatus::kSeen ||
                        lamp.observation == illumination::ObservationStatus::kNoShadow;
   if (visible != probes_visible_) {
-    spdlog::info("image {}: probes: {}", image, visible ? "visible" : name_of(lamp.observation));
+    spdlog::info("image {}: probes: {}", image, visible ? "visible" : to_string(lamp.observation));
   }
   probes_visible_ = visible;
   if (lamp.known == lamp_known_) return;
@@ -99,7 +100,7 @@ Result<void> LogSink::on_control_cycle(const MotionStatus& status) {
 
 Result<void> LogSink::on_switching(const SwitchRecord& record) {
   const stages::SwitchAnswer& answer = record.answer;
-  const auto what = fmt::format("{} {}, requested at {:.3f} s", name_of(answer.request.line),
+  const auto what = fmt::format("{} {}, requested at {:.3f} s", to_string(answer.request.line),
                                 answer.request.on ? "on" : "off", seconds_of(answer.request.asked_at));
   if (answer.done) {
     spdlog::info("switches: {}, done at {:.3f} s", what, seconds_of(answer.at));

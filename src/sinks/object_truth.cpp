@@ -42,8 +42,8 @@ void ObjectTruth::count(const hal::ImageTruth& truth, const color::TrackedObject
   if (!truth.there) return;
   ++statistics_.images;
   statistics_.fastest_object_mps = std::max(statistics_.fastest_object_mps, truth.object_mps);
-  const double smallest_m = statistics_.smallest_distance_m;
-  statistics_.smallest_distance_m = smallest_m == 0.0 ? truth.distance_m : std::min(smallest_m, truth.distance_m);
+  const double min_m = statistics_.min_distance_m;
+  statistics_.min_distance_m = min_m == 0.0 ? truth.distance_m : std::min(min_m, truth.distance_m);
   if (truth.robot_forward_mps > kRolls_mps && truth.nearing_mps <= 0.0) {
     keep_smallest(statistics_.nearest_by_own_motion, truth.distance_m / set_distance_m_);
   }

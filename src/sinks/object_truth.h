@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "hal/simulation.h"
-#include "pipeline/color/tracker.h"
+#include "pipeline/color/track/tracker.h"
 #include "pipeline/motion/motion_status.h"
 
 namespace cgsr::sinks {
@@ -18,7 +18,7 @@ struct ObjectTruthStatistics {
   std::uint64_t found_right = 0;    ///< and what it found overlaps the truth (intersection over union >= 0.4).
   std::uint64_t found_nothing = 0;  ///< images in which the robot found what was not in view.
   double fastest_object_mps = 0.0;
-  double smallest_distance_m = 0.0;  ///< from camera to object, however it came about; 0: never seen.
+  double min_distance_m = 0.0;  ///< from camera to object, however it came about; 0: never seen.
 
   /// Smallest distance over the set distance at a moment when the robot rolled forward and the object did not come
   /// nearer by itself.

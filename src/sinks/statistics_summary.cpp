@@ -76,7 +76,7 @@ void add_lamp(const LampStatistics& lamp, Summary& summary) {
 
 Json switching_json(const SwitchRecord& record) {
   const stages::SwitchRequest& request = record.answer.request;
-  return {{"lamp", name_of(request.line)},
+  return {{"lamp", to_string(request.line)},
           {"on", request.on},
           {"requested_s", seconds_of(request.asked_at)},
           {"answered_s", seconds_of(record.answer.at)},
@@ -91,20 +91,20 @@ void add_switches(const RunStatistics& run, Summary& summary) {
   for (const SwitchRecord& record : run.switchings) {
     const stages::SwitchRequest& request = record.answer.request;
     json["switchings"].push_back(switching_json(record));
-    summary.text += fmt::format("{:>9.3f} s  {} {}: {}\n", seconds_of(request.asked_at), name_of(request.line),
+    summary.text += fmt::format("{:>9.3f} s  {} {}: {}\n", seconds_of(request.asked_at), to_string(request.line),
                                 request.on ? "on" : "off",
                                 record.answer.done ? fmt::format("done at {:.3f} s", seconds_of(record.answer.at))
                                                    : std::string(record.problem.data()));
   }
   for (const CheckEnd& check : run.checks) {
-    json["checks"].push_back({{"lamp", name_of(check.lamp)},
-                              {"outcome", name_of(check.report.state)},
-                              {"verdict", name_of(check.report.verdict)},
+    json["checks"].push_back({{"lamp", to_string(check.lamp)},
+                              {"outcome", to_string(check.report.state)},
+                              {"verdict", to_string(check.report.verdict)},
                               {"pairs", check.report.tries},
                               {"image", check.image},
                               {"at_s", check.at_s}});
-    summary.text += fmt::format("{:>9.3f} s  check by the {}: {} ({})\n", check.at_s, name_of(check.lamp),
-                                name_of(check.report.state), name_of(check.report.verdict));
+    summary.text += fmt::format("{:>9.3f} s  check by the {}: {} ({})\n", check.at_s, to_string(check.lamp),
+                                to_string(check.report.state), to_string(check.report.verdict));
   }
   summary.text += "\n";
   summary.json["switches"] = std::move(json);

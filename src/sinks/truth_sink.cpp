@@ -32,7 +32,7 @@ void add_object(const ObjectTruthStatistics& truth, Summary& summary) {
                            {"found_right_share", share(truth.found_right, truth.in_view)},
                            {"found_nothing", truth.found_nothing},
                            {"fastest_object_mps", truth.fastest_object_mps},
-                           {"smallest_distance_m", truth.smallest_distance_m},
+                           {"min_distance_m", truth.min_distance_m},
                            {"nearest_by_own_motion", or_null(truth.nearest_by_own_motion)},
                            {"losses", truth.losses},
                            {"longest_command_after_loss_s", or_null(truth.longest_command_after_loss_s)},
@@ -47,7 +47,7 @@ void add_object(const ObjectTruthStatistics& truth, Summary& summary) {
   summary.text += fmt::format(
       "smallest distance by its own motion, as a share of the set distance: {}; smallest distance {:.2f} m\n",
       truth.nearest_by_own_motion ? fmt::format("{:.2f}", *truth.nearest_by_own_motion) : "it never drove forward",
-      truth.smallest_distance_m);
+      truth.min_distance_m);
   summary.text += fmt::format("object lost {} times: command zero {}, standing {}\n", truth.losses,
                               at_most(truth.longest_command_after_loss_s), at_most(truth.longest_roll_after_loss_s));
   summary.text += fmt::format("object came nearer {} times: command zero {}\n\n", truth.nearings,

@@ -17,7 +17,7 @@ std::string task_line(const ImageReport& report) {
 }
 
 std::string pose_line(const stages::PoseEstimate& pose) {
-  return fmt::format("pose {}   x {:.2f} y {:.2f} m  heading {:.1f} deg   {} matches", name_of(pose.camera.state),
+  return fmt::format("pose {}   x {:.2f} y {:.2f} m  heading {:.1f} deg   {} matches", to_string(pose.camera.state),
                      pose.robot.x_m, pose.robot.y_m, pose.robot.heading_rad * 180.0 / std::numbers::pi,
                      pose.camera.correction.matches);
 }
@@ -30,7 +30,7 @@ std::string lamp_line(const stages::LampReport& lamp, const stages::ShadowMasks&
     line += fmt::format("lamp {:.2f} {:.2f} {:.2f} m, sigma {:.3f}   ", p.x(), p.y(), p.z(),
                         std::sqrt(lamp.lamp.covariance.trace()));
   }
-  return line + fmt::format("shadow masks: {}", name_of(shade.status));
+  return line + fmt::format("shadow masks: {}", to_string(shade.status));
 }
 
 std::string stage_times(const runtime::FrameRecord& record, const runtime::Schedule& schedule) {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "hal/camera.h"
-#include "pipeline/color/light_history.h"
+#include "pipeline/color/track/light_history.h"
 #include "pipeline/runtime/stage_table.h"
 #include "src/output/overlay.h"
 #include "src/output/video_writer.h"

@@ -8,11 +8,11 @@
 
 namespace cgsr::tasks {
 
-/// Steps the motion loop with what has arrived since the last beat.
+/// Steps the motion loop with what has arrived since the last cycle.
 class MotionTask {
  public:
   /// \param latency  a goal arrives that long after its image's stamp: zero live, where it arrives when it does.
-  /// \param arm  asks for arming at every beat until it is granted: the command line's --arm.
+  /// \param arm  asks for arming at every cycle until it is granted: the command line's --arm.
   MotionTask(MotionLoop& loop, const StopRequest& stop, Duration latency, bool arm, Links& links)
       : loop_(loop), stop_(stop), latency_(latency), arm_(arm), links_(links) {}
 

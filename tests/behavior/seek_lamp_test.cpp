@@ -85,8 +85,8 @@ class Seek : public ::testing::Test {
     for (int i = 0; i < static_cast<int>(30.0 * seconds_long); ++i) image();
   }
 
-  [[nodiscard]] bool run_until(SeekState state, double seconds_most) {
-    for (int i = 0; i < static_cast<int>(30.0 * seconds_most); ++i) {
+  [[nodiscard]] bool run_until(SeekState state, double max_seconds) {
+    for (int i = 0; i < static_cast<int>(30.0 * max_seconds); ++i) {
       image();
       if (decision_.state == state) return true;
     }

@@ -1,4 +1,4 @@
-#include "pipeline/color/ball_circle.h"
+#include "pipeline/color/ball/ball_circle.h"
 
 #include <gtest/gtest.h>
 

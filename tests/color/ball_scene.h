@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "pipeline/color/ball_circle.h"
-#include "pipeline/color/color_model.h"
-#include "pipeline/color/learn.h"
-#include "pipeline/color/shade_mask.h"
+#include "pipeline/color/ball/ball_circle.h"
+#include "pipeline/color/ball/shade_mask.h"
+#include "pipeline/color/learn/color_model.h"
+#include "pipeline/color/learn/learn.h"
 #include "tests/color/scene.h"
 
 namespace cgsr::test {

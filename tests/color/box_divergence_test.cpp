@@ -1,4 +1,4 @@
-#include "pipeline/color/box_divergence.h"
+#include "pipeline/color/search/box_divergence.h"
 
 #include <gtest/gtest.h>
 
@@ -121,7 +121,7 @@ TEST(BoxDivergence, OutsideTheImageThereIsNothingAlike) {
   for (const auto kind : {Divergence::kJensenShannon, Divergence::kHellinger, Divergence::kIntersection}) {
     BoxDivergence divergence(world.model, kind);
     for (const Box& box : {Box{-50, 10, 40, 20}, Box{200, 10, 40, 20}, Box{10, 90, 40, 20}, Box{10, 10, 0, 0}}) {
-      EXPECT_EQ(divergence.of(world.image, box).divergence, largest_divergence(kind));
+      EXPECT_EQ(divergence.of(world.image, box).divergence, max_divergence(kind));
     }
   }
 }

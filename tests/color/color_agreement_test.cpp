@@ -1,4 +1,4 @@
-#include "pipeline/color/color_agreement.h"
+#include "pipeline/color/track/color_agreement.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "pipeline/color/light_estimate.h"
+#include "pipeline/color/track/light_estimate.h"
 
 namespace cgsr::color {
 namespace {

@@ -1,4 +1,4 @@
-#include "pipeline/color/color_likelihood.h"
+#include "pipeline/color/track/color_likelihood.h"
 
 #include <gtest/gtest.h>
 

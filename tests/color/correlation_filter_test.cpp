@@ -1,4 +1,4 @@
-#include "pipeline/color/correlation_filter.h"
+#include "pipeline/color/track/correlation_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/color/distinctiveness.h"
+#include "pipeline/color/learn/distinctiveness.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "pipeline/color/light.h"
+#include "pipeline/color/learn/light.h"
 
 namespace cgsr::color {
 namespace {
@@ -28,18 +28,18 @@ TEST(Distinctiveness, OneColourHasNone) {
   const imaging::Rgb red{0.8, 0.2, 0.1};
   EXPECT_DOUBLE_EQ(distinctiveness_of(half_and_half(red, red, 1.0)).divergence, 0.0);
   EXPECT_LT(distinctiveness_of(half_and_half(red, red, 1.0, 0.015)).divergence, 0.003);
-  EXPECT_EQ(distinctiveness_of({}).largest_share, 1.0);
+  EXPECT_EQ(distinctiveness_of({}).max_share, 1.0);
 }
 
 TEST(Distinctiveness, ShadingIsNoSecondColour) {
   const imaging::Rgb light{0.8, 0.4, 0.2};
   const auto shaded = half_and_half(light, {light.r / 1.3, light.g / 1.3, light.b / 1.3}, 0.5);
-  EXPECT_DOUBLE_EQ(distinctiveness_of(shaded).largest_share, 1.0);
+  EXPECT_DOUBLE_EQ(distinctiveness_of(shaded).max_share, 1.0);
 }
 
 TEST(Distinctiveness, IsTheDivergenceFromTheLargerColour) {
   const auto two = distinctiveness_of(half_and_half({0.8, 0.2, 0.1}, {0.1, 0.2, 0.8}, 0.7));
-  EXPECT_NEAR(two.largest_share, 0.7, 1e-9);
+  EXPECT_NEAR(two.max_share, 0.7, 1e-9);
   // Jensen-Shannon between (0.7, 0.3) and (1, 0), by hand.
   const double by_hand = 0.5 * (0.7 * std::log(0.7 / 0.85) + 0.3 * std::log(0.3 / 0.15)) + 0.5 * std::log(1.0 / 0.85);
   EXPECT_NEAR(two.divergence, by_hand, 1e-9);

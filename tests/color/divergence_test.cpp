@@ -1,4 +1,4 @@
-#include "pipeline/color/divergence.h"
+#include "pipeline/color/search/divergence.h"
 
 #include <gtest/gtest.h>
 
@@ -62,10 +62,10 @@ TEST(DivergenceProperty, EqualHistogramsHaveNoneAndStrangersTheLargest) {
     const auto p = random_histogram(random, 30);
     EXPECT_NEAR(divergence_of(divergence, similarity(divergence, p, p)), 0.0, 1e-7) << name;
     EXPECT_DOUBLE_EQ(divergence_of(divergence, similarity(divergence, {1.0, 0.0}, {0.0, 1.0})),
-                     largest_divergence(divergence))
+                     max_divergence(divergence))
         << name;
   }
-  EXPECT_DOUBLE_EQ(largest_divergence(Divergence::kJensenShannon), std::numbers::ln2);
+  EXPECT_DOUBLE_EQ(max_divergence(Divergence::kJensenShannon), std::numbers::ln2);
 }
 
 // What the bounds of the search rest on.

@@ -1,4 +1,4 @@
-#include "pipeline/color/integrated_tracker.h"
+#include "pipeline/color/ball/integrated_tracker.h"
 
 #include <gtest/gtest.h>
 

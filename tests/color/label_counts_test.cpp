@@ -1,4 +1,4 @@
-#include "pipeline/color/label_counts.h"
+#include "pipeline/color/search/label_counts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(Learn, KeepsAHistogramPerLightOfObjectAndSurroundings) {
   EXPECT_EQ(model.width_px, 36);
   EXPECT_EQ(model.height_px, 48);
   EXPECT_EQ(learned->widened_by, 0.0);
-  EXPECT_THAT(learned->words, HasSubstr("distinctiveness"));
+  EXPECT_THAT(learned->message, HasSubstr("distinctiveness"));
   ASSERT_EQ(model.samples.size(), 1U);
   EXPECT_NEAR(model.samples[0].light.r, 0.8, 0.02);
   // The green around it is in the surroundings' histograms and in none of the object's, whatever the light.
@@ -111,8 +111,8 @@ TEST(Learn, WidensWhatIsOfOneColourAndSaysWhy) {
 
   ASSERT_TRUE(learned) << learned.error().message;
   EXPECT_GT(learned->widened_by, 0.0);
-  EXPECT_THAT(learned->words, HasSubstr("widened"));
-  EXPECT_THAT(learned->words, HasSubstr("one colour explains"));
+  EXPECT_THAT(learned->message, HasSubstr("widened"));
+  EXPECT_THAT(learned->message, HasSubstr("one colour explains"));
   EXPECT_GT(learned->model.width_px, inside_red.width);
   EXPECT_EQ(learned->model.object_box.width, inside_red.width);
   EXPECT_EQ(learned->windows[0].x + learned->model.object_box.x, inside_red.x);

@@ -1,4 +1,4 @@
-#include "pipeline/color/light_estimate.h"
+#include "pipeline/color/track/light_estimate.h"
 
 #include <gtest/gtest.h>
 

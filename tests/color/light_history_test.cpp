@@ -1,4 +1,4 @@
-#include "pipeline/color/light_history.h"
+#include "pipeline/color/track/light_history.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/color/light.h"
+#include "pipeline/color/learn/light.h"
 
 #include <gtest/gtest.h>
 

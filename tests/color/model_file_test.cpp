@@ -1,4 +1,4 @@
-#include "pipeline/color/model_file.h"
+#include "pipeline/color/learn/model_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 #include "tests/color/scene.h"
 
 namespace cgsr::color {

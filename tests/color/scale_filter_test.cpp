@@ -1,4 +1,4 @@
-#include "pipeline/color/scale_filter.h"
+#include "pipeline/color/track/scale_filter.h"
 
 #include <gtest/gtest.h>
 

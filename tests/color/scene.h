@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 #include "pipeline/imaging/color_code.h"
 #include "pipeline/imaging/reduce.h"
 #include "platform/box.h"

@@ -7,8 +7,8 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/color/exhaustive_search.h"
-#include "pipeline/color/window_search.h"
+#include "pipeline/color/search/exhaustive_search.h"
+#include "pipeline/color/search/window_search.h"
 #include "tests/color/scene.h"
 #include "tests/support/real_data.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/color/similarity.h"
+#include "pipeline/color/search/similarity.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
-#include "pipeline/color/learn.h"
-#include "pipeline/color/similarity_rows.h"
+#include "pipeline/color/learn/learn.h"
+#include "pipeline/color/search/similarity_rows.h"
 #include "tests/color/scene.h"
 
 namespace cgsr::color {
@@ -219,13 +219,13 @@ TEST(SimilarityRowsProperty, BoundsHold) {
 
 TEST(Units, ThresholdsAreTheLeastThatPass) {
   for (const auto& [name, divergence] : kDivergenceNames) {
-    for (double limit = 0.01; limit < largest_divergence(divergence); limit += 0.037) {
-      const int least = least_units(divergence, limit);
+    for (double limit = 0.01; limit < max_divergence(divergence); limit += 0.037) {
+      const int least = min_units(divergence, limit);
       EXPECT_LE(divergence_of_units(divergence, least), limit) << name;
       EXPECT_GT(divergence_of_units(divergence, least - 1), limit) << name;
     }
-    EXPECT_EQ(least_units(divergence, 0.0), kOne) << name;
-    EXPECT_EQ(least_units(divergence, 1.0), 0) << name;
+    EXPECT_EQ(min_units(divergence, 0.0), kOne) << name;
+    EXPECT_EQ(min_units(divergence, 1.0), 0) << name;
   }
 }
 

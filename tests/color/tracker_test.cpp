@@ -1,5 +1,5 @@
-#include "pipeline/color/tracker.h"
-#include "pipeline/color/object_search.h"
+#include "pipeline/color/track/tracker.h"
+#include "pipeline/color/track/object_search.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <optional>
 #include <random>
 
-#include "pipeline/color/exhaustive_search.h"
+#include "pipeline/color/search/exhaustive_search.h"
 #include "tests/color/scene.h"
 #include "tests/support/allocation_guard.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/color/window_grid.h"
+#include "pipeline/color/search/window_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "pipeline/color/window_search.h"
+#include "pipeline/color/search/window_search.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "pipeline/color/exhaustive_search.h"
+#include "pipeline/color/search/exhaustive_search.h"
 #include "tests/color/scene.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/counted_budget.h"

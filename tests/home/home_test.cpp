@@ -74,11 +74,11 @@ TEST(SimulatedHome, PitchMovesTheCamera) {
   hal::rmp::RmpDrive drive(home->take_can_bus(), {});
   ASSERT_TRUE(drive.start());
   double steepest = 0.0;
-  for (int beat = 0; beat < 200; ++beat) {
-    const MonoTime now = at(0.01 * beat);
+  for (int cycle = 0; cycle < 200; ++cycle) {
+    const MonoTime now = at(0.01 * cycle);
     home->advance_to(now);
     static_cast<void>(drive.rearm(now));
-    static_cast<void>(drive.command({beat < 60 ? 0.0 : 0.5, 0.0}, now));
+    static_cast<void>(drive.command({cycle < 60 ? 0.0 : 0.5, 0.0}, now));
     const BaseState base = home->segway().base().state_at(now);
     const Moment moment = home->moment_at(now);
     const Eigen::Vector3d forward = moment.X_WC.linear().col(2);
@@ -120,8 +120,8 @@ TEST(SimulatedHomeReplay, ImagesAndBusFramesAreTheSameOnOneThreadAndOnTwo) {
     ASSERT_TRUE(drive.start());
     auto& taken = images.emplace_back();
     for (int number = 0; number < 30; ++number) {
-      for (int beat = 0; beat < 3; ++beat) {
-        const MonoTime now = at(number / 30.0 + 0.01 * beat);
+      for (int cycle = 0; cycle < 3; ++cycle) {
+        const MonoTime now = at(number / 30.0 + 0.01 * cycle);
         home->advance_to(now);
         static_cast<void>(drive.rearm(now));
         static_cast<void>(drive.command({0.3, 0.2}, now));

@@ -65,7 +65,7 @@ using CheckedAlloc = Checked;
 
 TEST_F(Checked, AKnownLampPassesAndIsSwitchedBack) {
   const auto report = run(lamp_B_);
-  EXPECT_EQ(report.state, CheckState::kPassed) << name_of(report.verdict);
+  EXPECT_EQ(report.state, CheckState::kPassed) << to_string(report.verdict);
   EXPECT_EQ(report.tries, 1);
   EXPECT_EQ(switchings_, 2);
   EXPECT_FALSE(line_.on);
@@ -94,8 +94,8 @@ TEST_F(Checked, AShadowThatStaysIsNotTheLampsShadow) {
   lit_ = draw(board_, board_.X_BC, both);
   check_.reopen();
   const auto stays = run(lamp_B_);
-  EXPECT_EQ(stays.state, CheckState::kFailed) << name_of(stays.verdict);
-  EXPECT_EQ(stays.verdict, SwitchVerdict::kNoShadow) << name_of(stays.verdict);
+  EXPECT_EQ(stays.state, CheckState::kFailed) << to_string(stays.verdict);
+  EXPECT_EQ(stays.verdict, SwitchVerdict::kNoShadow) << to_string(stays.verdict);
 }
 
 TEST_F(Checked, AnImageThatDoesNotShowTheChangeYetIsNotLookedAt) {
@@ -111,13 +111,13 @@ TEST_F(CheckedFault, EachHasItsName) {
   bulb_broken_ = true;
   const auto broken = run(lamp_B_);
   EXPECT_EQ(broken.state, CheckState::kFault);
-  EXPECT_EQ(name_of(broken.verdict), "the lamp did not switch");
+  EXPECT_EQ(to_string(broken.verdict), "the lamp did not switch");
   bulb_broken_ = false;
 
   line_answers_ = false;
   const auto silent = run(lamp_B_);
   EXPECT_EQ(silent.state, CheckState::kFault);
-  EXPECT_EQ(name_of(silent.verdict), "the switch does not answer");
+  EXPECT_EQ(to_string(silent.verdict), "the switch does not answer");
   EXPECT_FALSE(check_.wants_on());
 }
 

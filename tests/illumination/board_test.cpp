@@ -23,15 +23,15 @@ TEST(BoardProperty, DerivativesOfThePixelAreThoseOfSmallSteps) {
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(k);
       const Eigen::Vector2d change = (view.pixel(p_B + step).at - view.pixel(p_B - step).at) / 2e-6;
-      EXPECT_LT((change - d.by_point.col(k)).norm(), 1e-3);
+      EXPECT_LT((change - d.J_point.col(k)).norm(), 1e-3);
     }
-    const auto by_pose = view.by_pose(d, p_B);
+    const auto J_pose = view.pose_jacobian(d, p_B);
     for (int k = 0; k < 6; ++k) {
       const geometry::Vector6d step = 1e-6 * geometry::Vector6d::Unit(k);
       const BoardView plus(board.camera, geometry::moved(board.X_BC, step));
       const BoardView minus(board.camera, geometry::moved(board.X_BC, -step));
       const Eigen::Vector2d change = (plus.pixel(p_B).at - minus.pixel(p_B).at) / 2e-6;
-      EXPECT_LT((change - by_pose.col(k)).norm(), 2e-3) << k;
+      EXPECT_LT((change - J_pose.col(k)).norm(), 2e-3) << k;
     }
   }
 }

@@ -46,8 +46,8 @@ TEST(LampProperty, DerivativesOfAShadowAreThoseOfSmallSteps) {
   EXPECT_LT((model.p_BS - cast(lamp, tip)).norm(), 1e-12);
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(k);
-    EXPECT_LT(((cast(lamp + step, tip) - cast(lamp - step, tip)) / 2e-6 - model.by_lamp.col(k)).norm(), 1e-6);
-    EXPECT_LT(((cast(lamp, tip + step) - cast(lamp, tip - step)) / 2e-6 - model.by_tip.col(k)).norm(), 1e-6);
+    EXPECT_LT(((cast(lamp + step, tip) - cast(lamp - step, tip)) / 2e-6 - model.J_lamp.col(k)).norm(), 1e-6);
+    EXPECT_LT(((cast(lamp, tip + step) - cast(lamp, tip - step)) / 2e-6 - model.J_tip.col(k)).norm(), 1e-6);
   }
 }
 

@@ -11,7 +11,7 @@
 #include "pipeline/geometry/camera.h"
 #include "pipeline/geometry/pose.h"
 #include "pipeline/illumination/lamp.h"
-#include "pipeline/illumination/rod_shadow.h"
+#include "tests/illumination/rod_shadow.h"
 #include "tests/support/real_data.h"
 
 namespace cgsr::illumination {

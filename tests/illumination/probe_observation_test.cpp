@@ -134,7 +134,7 @@ TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
     const auto image = draw(board, X_BC, drawing);
     ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
     const auto seen = observer.observe(image.view());
-    EXPECT_EQ(seen.probe[0].count + seen.probe[1].count, 0) << name_of(seen.status);
+    EXPECT_EQ(seen.probe[0].count + seen.probe[1].count, 0) << to_string(seen.status);
   }
 }
 

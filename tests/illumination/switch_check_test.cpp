@@ -33,7 +33,7 @@ TEST(SwitchCheck, AKnownLampsShadowsFallWhereTheProbesAre) {
   const auto [on, off] = drawn_pair(board, lamp_B);
   SwitchChecker checker(board, shipped_probes(), kLampHeight_m);
   const auto check = checker.check(on.view(), off.view(), board.X_RB * lamp_B, 0.01);
-  EXPECT_EQ(check.verdict, SwitchVerdict::kAgrees) << name_of(check.verdict);
+  EXPECT_EQ(check.verdict, SwitchVerdict::kAgrees) << to_string(check.verdict);
   EXPECT_TRUE(check.seen[0] || check.seen[1]);
   EXPECT_GT(check.difference, 30.0);
 }
@@ -47,7 +47,7 @@ TEST(SwitchCheck, AProbeThatWasBentIsNoticed) {
   const auto [on, off] = drawn_pair(bent, lamp_B);
   SwitchChecker checker(board, shipped_probes(), kLampHeight_m);
   const auto check = checker.check(on.view(), off.view(), board.X_RB * lamp_B, 0.01);
-  EXPECT_EQ(check.verdict, SwitchVerdict::kDisagrees) << name_of(check.verdict);
+  EXPECT_EQ(check.verdict, SwitchVerdict::kDisagrees) << to_string(check.verdict);
 }
 
 TEST(SwitchCheckFault, EachHasItsName) {

@@ -37,7 +37,7 @@ Complexes naive_transform(const RealGrid& grid) {
   return all;
 }
 
-double largest_error(const Spectrum& spectrum, const Complexes& expected) {
+double max_error(const Spectrum& spectrum, const Complexes& expected) {
   double error = 0.0;
   for (std::size_t i = 0; i < kGridArea; ++i) {
     const std::complex<double> value{static_cast<double>(spectrum.re[i]), static_cast<double>(spectrum.im[i])};
@@ -64,8 +64,8 @@ TEST(FourierProperty, IsTheDefinitionForBothGrids) {
 
     transform(a, b, spectrum_a, spectrum_b);
 
-    EXPECT_LT(largest_error(spectrum_a, naive_transform(a)), 1e-4) << trial;
-    EXPECT_LT(largest_error(spectrum_b, naive_transform(b)), 1e-4) << trial;
+    EXPECT_LT(max_error(spectrum_a, naive_transform(a)), 1e-4) << trial;
+    EXPECT_LT(max_error(spectrum_b, naive_transform(b)), 1e-4) << trial;
   }
 }
 
@@ -111,7 +111,7 @@ TEST(FourierProperty, AShiftTurnsEveryFrequency) {
         expected[at(kx, ky)] = value * std::polar(1.0, angle);
       }
     }
-    EXPECT_LT(largest_error(spectrum_shifted, expected), 2e-4) << dx << ',' << dy;
+    EXPECT_LT(max_error(spectrum_shifted, expected), 2e-4) << dx << ',' << dy;
   }
 }
 

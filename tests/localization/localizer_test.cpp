@@ -71,7 +71,7 @@ TEST(Localizer, CorrectsANarrowPriorFromOneImage) {
     const Picture picture(map, truth, camera, 1.5, static_cast<std::uint32_t>(trial));
     int images = 0;
     const Correction answer = answer_of(localizer, picture.view(), drawn_prior(truth, kTracking, random), images);
-    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_TRUE(answer.corrected) << to_string(answer.reason);
     EXPECT_EQ(images, 1);
     const Error error = error_of(truth, answer.X_WC);
     EXPECT_LT(error.position_m, 0.025);
@@ -104,7 +104,7 @@ TEST(Localizer, CornersHoldThePoseAlongParallelEdges) {
     prior.X_WC.translation().y() += off_m;
     int images = 0;
     const Correction answer = answer_of(localizer, picture.view(), prior, images);
-    ASSERT_TRUE(answer.corrected) << name_of(answer.reason);
+    ASSERT_TRUE(answer.corrected) << to_string(answer.reason);
     EXPECT_LT(std::abs(answer.X_WC.translation().y() - truth.translation().y()), 0.5 * std::abs(off_m));
     EXPECT_LT(std::sqrt(answer.covariance(1, 1)), 0.02);
     moved_m += std::abs(answer.X_WC.translation().y() - prior.X_WC.translation().y());
@@ -181,7 +181,7 @@ TEST(Localizer, SearchesOverImagesOfAMovingCamera) {
     believed = believed * X_C0C1;
     localizer.carried(X_C0C1);
   }
-  EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+  EXPECT_TRUE(answer.corrected) << to_string(answer.reason);
   EXPECT_GT(images, 3);
   EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.02);
 }
@@ -219,7 +219,7 @@ TEST(Localizer, AStandingCameraLooksOnce) {
   const auto looks_at = [&](const Pose& X_WC, std::uint32_t seed) {
     const Picture picture(map, X_WC, camera, 1.5, seed);
     const Correction answer = localizer.correct(picture.view(), prior_at(X_WC, kFollowed), budget);
-    EXPECT_TRUE(answer.corrected) << name_of(answer.reason);
+    EXPECT_TRUE(answer.corrected) << to_string(answer.reason);
     EXPECT_LT(error_of(X_WC, answer.X_WC).position_m, 0.02);
     return answer.looks;
   };
@@ -231,7 +231,7 @@ TEST(Localizer, AStandingCameraLooksOnce) {
   EXPECT_GE(looks_at(turned, 9), 1);
 }
 
-// Without its rivals a pose is not known to be the only one: what an image's budget does not hold is searched over several.
+// Without its alternative hypotheses a pose is not known to be the only one: what an image's budget does not hold is searched over several.
 TEST(Localizer, APriorThatNeedsMoreStartsThanTheBudgetHoldsIsSearchedOverImages) {
   const world::Map map = small_room();
   const geometry::Camera camera = room_camera();
@@ -292,7 +292,7 @@ TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
       UnlimitedBudget budget;
       const Correction answer = localizer.correct(picture.view(), prior, budget);
       EXPECT_TRUE(answer.corrected) << static_cast<int>(method) << ", trial " << trial << ": "
-                                    << name_of(answer.reason);
+                                    << to_string(answer.reason);
       if (trial == 0) {
         EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.06) << static_cast<int>(method);
       }
@@ -317,7 +317,7 @@ class LocalizerFault : public ::testing::Test {
     UnlimitedBudget budget;
     const Correction answer = localizer_.correct(image, prior_, budget);
     EXPECT_FALSE(answer.corrected);
-    EXPECT_EQ(answer.reason, reason) << name_of(answer.reason);
+    EXPECT_EQ(answer.reason, reason) << to_string(answer.reason);
     EXPECT_TRUE(answer.X_WC.isApprox(prior_.X_WC, 0.0));
     EXPECT_TRUE(answer.covariance.isApprox(prior_.covariance, 0.0));
   }
@@ -347,7 +347,7 @@ TEST_F(LocalizerFault, AHandBeforeTheCameraIsNotAPose) {
   EXPECT_FALSE(answer.corrected);
   EXPECT_TRUE(answer.reason == Reason::kTooFewEdges || answer.reason == Reason::kUnexplained ||
               answer.reason == Reason::kTooFewMatches)
-      << name_of(answer.reason);
+      << to_string(answer.reason);
   EXPECT_TRUE(answer.X_WC.isApprox(prior_.X_WC, 0.0));
 }
 

@@ -57,7 +57,7 @@ TEST_F(Tracking, FollowsARobotThatSlips) {
   tracker_.start(prior_at(X_WR * X_RC_, kKnown));
   for (int i = 0; i < 25; ++i) {
     const TrackedPose& now = see(X_WR);
-    EXPECT_EQ(now.state, TrackState::kTracking) << name_of(now.correction.reason);
+    EXPECT_EQ(now.state, TrackState::kTracking) << to_string(now.correction.reason);
     const geometry::Vector6d error = geometry::step_between(X_WR * X_RC_, now.X_WC);
     EXPECT_LT(error.head<3>().norm(), 0.02) << i;
     EXPECT_LT(error.tail<3>().norm(), 0.5 * kDegree) << i;

@@ -30,7 +30,7 @@ TEST(MotionLoopFault, GoalStale) {
   MotionStatus status;
   const double silence_s = seconds_to_zero(rig, last_stamp, status);
   EXPECT_GT(silence_s, 0.150) << "not before";
-  EXPECT_LE(silence_s, 0.160 + 1e-9) << "150 ms of stamp time and one beat";
+  EXPECT_LE(silence_s, 0.160 + 1e-9) << "150 ms of stamp time and one cycle";
   EXPECT_EQ(status.cause, StopCause::kGoalStale);
   EXPECT_TRUE(status.armed);
 
@@ -69,7 +69,7 @@ TEST(MotionLoopFault, ImagesLate) {
   rig.arm_and_move({0.3, 0.2});
   rig.inputs.images_in_time = false;
   auto status = rig.step();
-  EXPECT_TRUE(is_zero(rig.drive->commands.back())) << "in the same beat";
+  EXPECT_TRUE(is_zero(rig.drive->commands.back())) << "in the same control cycle";
   EXPECT_EQ(status.cause, StopCause::kImagesLate);
   rig.inputs.images_in_time = true;
   status = rig.step();
@@ -90,7 +90,7 @@ TEST(MotionLoopFault, FeedbackStale) {
   EXPECT_FALSE(status.armed);
 }
 
-/// A cause that stops the robot in the beat in which it is seen, disarms it, and lets it be armed again once it is over.
+/// A cause that stops the robot in the cycle in which it is seen, disarms it, and lets it be armed again once it is over.
 template <class AnyRig>
 void expect_latches(AnyRig& rig, StopCause cause, const std::function<void(bool)>& set) {
   rig.arm_and_move({0.3, 0.2});
@@ -212,7 +212,7 @@ TEST(MotionLoopFault, ZeroIsTriedAgainWhenACommandDidNotLeave) {
   rig.arm_and_move({0.3, 0.2});
   rig.drive->script.sends_fail_next = 1;
   const auto status = rig.step();
-  EXPECT_TRUE(is_zero(rig.drive->commands.back())) << "in the same beat";
+  EXPECT_TRUE(is_zero(rig.drive->commands.back())) << "in the same control cycle";
   EXPECT_EQ(status.cause, StopCause::kDriveFailed);
   EXPECT_FALSE(status.sent);
   EXPECT_FALSE(status.armed);
@@ -239,7 +239,7 @@ TEST(MotionLoopFault, LateLoopIsCountedAndNotArmed) {
   EXPECT_TRUE(rig.request(ArmRequest::kArm).armed) << "a second later";
 }
 
-TEST(MotionLoopFault, LateBeatIsNoJumpOfSpeed) {
+TEST(MotionLoopFault, LateCycleIsNoJumpOfSpeed) {
   Rig rig;
   rig.arm_and_move({});
   rig.goal = {0.4, 1.0};

@@ -91,7 +91,7 @@ MotionParameters draw_parameters(Chance& chance) {
   limits.max_deceleration_mps2 = chance.draw(0.2, 2.0);
   limits.max_turn_radps = chance.draw(0.3, 2.0);
   limits.max_turn_acceleration_radps2 = chance.draw(0.5, 5.0);
-  limits.reaction_s = chance.draw(0.08, 0.3);  // covers the latest beat of this test
+  limits.reaction_s = chance.draw(0.08, 0.3);  // covers the latest cycle of this test
   limits.keep_in.min_x_m = limits.keep_in.min_y_m = -1.0;
   limits.keep_in.max_x_m = limits.keep_in.max_y_m = 1.0;
   return limits;
@@ -122,7 +122,7 @@ struct Tally {
   int slowed = 0;
 };
 
-/// `steps` beats of random goals and random trouble against the shadow.
+/// `steps` control cycles of random goals and random trouble against the shadow.
 Tally run(std::uint64_t seed, int steps) {
   Chance chance(seed);
   Rig rig(draw_parameters(chance));

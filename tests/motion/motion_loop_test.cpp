@@ -28,7 +28,7 @@ TEST(MotionLoop, ArmsOnRequestAndReachesTheGoalByTheRamp) {
   const auto first = rig.request(ArmRequest::kArm);
   EXPECT_TRUE(first.armed);
   EXPECT_EQ(first.arm_refusal, StopCause::kNone);
-  EXPECT_NEAR(first.commanded.forward_mps, 0.4 * 0.01, 1e-12) << "acceleration limit times one beat";
+  EXPECT_NEAR(first.commanded.forward_mps, 0.4 * 0.01, 1e-12) << "acceleration limit times one cycle";
   EXPECT_NEAR(first.commanded.left_radps, 2.0 * 0.01, 1e-12);
 
   const auto later = rig.steps(300);

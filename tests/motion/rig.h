@@ -12,7 +12,7 @@ inline bool is_zero(const hal::Twist& twist) {
   return twist.forward_mps == 0.0 && twist.left_radps == 0.0;
 }
 
-/// A motion loop on a scripted base, stepped at its beat, with everything well unless a test says otherwise.
+/// A motion loop on a scripted base, stepped at its cycle, with everything well unless a test says otherwise.
 template <class DriveType = ScriptedDrive>
 struct Rig {
   explicit Rig(const MotionParameters& motion = {}, MotionLoop::Mode mode = MotionLoop::Mode::kLive)
@@ -25,7 +25,7 @@ struct Rig {
     EXPECT_TRUE(loop.start());
   }
 
-  /// One beat later. The goal, if any, belongs to an image of 33 ms ago.
+  /// One cycle later. The goal, if any, belongs to an image of 33 ms ago.
   MotionStatus step(Duration since_last = kMotionPeriod) {
     now += since_last;
     inputs.goal.reset();

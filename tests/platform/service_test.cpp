@@ -46,7 +46,7 @@ class Manager {
   Manager& operator=(const Manager&) = delete;
 
   /// \return the next message, empty when there is none.
-  std::string heard() {
+  std::string received() {
     std::array<char, 256> buffer{};
     const auto length = recv(socket_, buffer.data(), buffer.size(), 0);
     return length <= 0 ? std::string() : std::string(buffer.data(), static_cast<std::size_t>(length));
@@ -60,13 +60,13 @@ class Manager {
 TEST(Service, TellsTheManager) {
   Manager manager;
   service::notify_ready();
-  EXPECT_EQ(manager.heard(), "READY=1");
+  EXPECT_EQ(manager.received(), "READY=1");
   service::notify_status("30 images a second");
-  EXPECT_EQ(manager.heard(), "STATUS=30 images a second");
+  EXPECT_EQ(manager.received(), "STATUS=30 images a second");
   service::ping_watchdog();
-  EXPECT_EQ(manager.heard(), "WATCHDOG=1");
+  EXPECT_EQ(manager.received(), "WATCHDOG=1");
   service::notify_stopping();
-  EXPECT_EQ(manager.heard(), "STOPPING=1");
+  EXPECT_EQ(manager.received(), "STOPPING=1");
 }
 
 TEST(Service, DoesNothingWithoutAManager) {
@@ -113,13 +113,13 @@ TEST(Heartbeats, TheWatchdogIsPingedOnlyWhileAllBeat) {
   const auto vision = heartbeats.add("vision", milliseconds(200), at(0));
   const auto motion = heartbeats.add("motion", milliseconds(50), at(0));
   EXPECT_THAT(supervise(heartbeats, at(40)), IsEmpty());
-  EXPECT_EQ(manager.heard(), "WATCHDOG=1");
+  EXPECT_EQ(manager.received(), "WATCHDOG=1");
   heartbeats.beat(vision, at(90));
   EXPECT_EQ(supervise(heartbeats, at(90)).size(), 1U);
-  EXPECT_EQ(manager.heard(), "");
+  EXPECT_EQ(manager.received(), "");
   heartbeats.beat(motion, at(100));
   EXPECT_THAT(supervise(heartbeats, at(100)), IsEmpty());
-  EXPECT_EQ(manager.heard(), "WATCHDOG=1");
+  EXPECT_EQ(manager.received(), "WATCHDOG=1");
 }
 
 TEST(HeartbeatsStress, BeatsAndLooksAtOnce) {

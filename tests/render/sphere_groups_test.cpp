@@ -58,7 +58,7 @@ TEST(SphereGroupsProperty, NothingNearerThanItsReachIsMissing) {
   std::mt19937 random(3);
   for (const std::size_t count : {500U, 20000U}) {
     const auto spheres = random_spheres(random, count);
-    const SelectionLimits limits{.max_visited = 4096, .chosen_most = 300, .weight_most = 900};
+    const SelectionLimits limits{.max_visited = 4096, .max_chosen = 300, .max_weight = 900};
     SphereGroups groups(spheres, limits, Preference::kNearest);
     for (int trial = 0; trial < 100; ++trial) {
       const Frustum frustum = random_frustum(random);
@@ -84,7 +84,7 @@ TEST(SphereGroupsProperty, NothingNearerThanItsReachIsMissing) {
 TEST(SphereGroupsProperty, TheLargestWithinADistanceAreKept) {
   std::mt19937 random(4);
   const auto spheres = random_spheres(random, 5000);
-  SphereGroups groups(spheres, {.max_visited = 8192, .chosen_most = 100}, Preference::kLargest);
+  SphereGroups groups(spheres, {.max_visited = 8192, .max_chosen = 100}, Preference::kLargest);
   constexpr float kWithin_m = 20.0F;
   for (int trial = 0; trial < 100; ++trial) {
     const Frustum frustum = random_frustum(random);

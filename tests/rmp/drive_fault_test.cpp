@@ -102,8 +102,8 @@ TEST_P(RmpDriveEveryFault, StopsLatchesAndIsRearmed) {
   // Over, but nobody has re-armed: zero may be commanded and nothing else.
   (void)rig.run_until(5.5, kForward);
   EXPECT_EQ(rig.drive.fault(), GetParam().fault) << "the first cause stays until it is re-armed";
-  EXPECT_EQ(rig.beat(kForward).error(), DriveFailure::kNotReady);
-  EXPECT_TRUE(rig.beat(kStand));
+  EXPECT_EQ(rig.cycle(kForward).error(), DriveFailure::kNotReady);
+  EXPECT_TRUE(rig.cycle(kStand));
   EXPECT_NEAR(rig.segway.base().state_at(rig.now).x_m, where_m, 0.02);
 
   ASSERT_TRUE(rig.drive.rearm(rig.now));
@@ -241,7 +241,7 @@ TEST(RmpDriveFault, ImplausibleValuesAreLeftOut) {
     f.stamp = rig.now;
     rig.segway.bus().inject(f);
   }
-  EXPECT_TRUE(rig.beat(kForward));
+  EXPECT_TRUE(rig.cycle(kForward));
   EXPECT_NEAR(rig.odometry.velocity.forward_mps, before.velocity.forward_mps, 0.05);
   EXPECT_NEAR(rig.odometry.pitch_rad, before.pitch_rad, 0.05);
   EXPECT_NEAR(rig.odometry.x_m, before.x_m, 0.02);
@@ -257,7 +257,7 @@ TEST(RmpDriveFault, DisplacementsThatOnlyJumpAreLostFeedback) {
   ASSERT_TRUE(rig.run_until(1.0, kForward));
   test::Random random(4);
   while (rig.now < at(1.2)) {
-    (void)rig.beat(kForward);
+    (void)rig.cycle(kForward);
     auto f = sim::integrated_frame(static_cast<std::uint32_t>(random.whole(0, 0xFFFFFFFF)), 0);
     f.stamp = rig.now;
     f.id = 0x404;

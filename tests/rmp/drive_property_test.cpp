@@ -69,10 +69,10 @@ TEST(RmpDriveProperty, NeverCommandsMotionBetweenATroubleAndARearming) {
         moved_now = true;
     });
     MonoTime rearmed_at = MonoTime::min();
-    int beats_in_motion = 0, rearmings = 0;
+    int cycles_in_motion = 0, rearmings = 0;
     while (rig.now < at(30.0)) {
       moved_now = false;
-      (void)rig.beat({.forward_mps = random.real(-0.5, 0.5), .left_radps = random.real(-0.5, 0.5)});
+      (void)rig.cycle({.forward_mps = random.real(-0.5, 0.5), .left_radps = random.real(-0.5, 0.5)});
       const bool forbidden = std::any_of(troubles.begin(), troubles.end(), [&](const Trouble& trouble) {
         const bool noticed = trouble.from + kNoticed < rig.now;
         return noticed && (rig.now < trouble.to || rearmed_at < trouble.from);
@@ -86,13 +86,13 @@ TEST(RmpDriveProperty, NeverCommandsMotionBetweenATroubleAndARearming) {
       if (forbidden && !from_queue) {
         ASSERT_FALSE(moved_now) << "seed " << seed << " at " << to_seconds(rig.now - kBegin);
       }
-      beats_in_motion += moved_now ? 1 : 0;
+      cycles_in_motion += moved_now ? 1 : 0;
       if (random.whole(0, 20) == 0 && rig.drive.fault() != hal::DriveFault::kNone && rig.drive.rearm(rig.now)) {
         rearmed_at = rig.now;
         ++rearmings;
       }
     }
-    EXPECT_GT(beats_in_motion, 200) << "seed " << seed;
+    EXPECT_GT(cycles_in_motion, 200) << "seed " << seed;
     EXPECT_GT(rearmings, 1) << "seed " << seed;
   }
 }
@@ -103,7 +103,7 @@ TEST(RmpDriveFuzz, RandomFramesNeverBreakIt) {
                                     0x407, 0x412, 0x413, 0x414, 0x680, 0x688};
   Random random(99);
   Rig rig;
-  for (int beat = 0; beat < 20000; ++beat) {
+  for (int cycle = 0; cycle < 20000; ++cycle) {
     for (auto count = random.whole(0, 12); count > 0; --count) {
       hal::CanFrame f;
       f.id = random.whole(0, 9) == 0 ? static_cast<std::uint16_t>(random.whole(0, 0x7FF))
@@ -115,7 +115,7 @@ TEST(RmpDriveFuzz, RandomFramesNeverBreakIt) {
       f.stamp = rig.now;
       rig.segway.bus().inject(f);
     }
-    (void)rig.beat({.forward_mps = random.real(-2.0, 2.0), .left_radps = random.real(-3.0, 3.0)});
+    (void)rig.cycle({.forward_mps = random.real(-2.0, 2.0), .left_radps = random.real(-3.0, 3.0)});
     if (random.whole(0, 10) == 0) (void)rig.drive.rearm(rig.now);
     ASSERT_TRUE(std::isfinite(rig.odometry.x_m) && std::isfinite(rig.odometry.y_m) &&
                 std::isfinite(rig.odometry.heading_rad));
@@ -138,9 +138,9 @@ TEST(RmpDriveAlloc, NeitherCommandNorOdometryAllocates) {
   (void)rig.run_until(1.0, test::kForward);
 
   const test::AllocationGuard guard;
-  for (int beat = 0; beat < 600; ++beat) {
-    (void)rig.beat(test::kForward);
-    if (beat % 50 == 0) (void)rig.drive.rearm(rig.now);
+  for (int cycle = 0; cycle < 600; ++cycle) {
+    (void)rig.cycle(test::kForward);
+    if (cycle % 50 == 0) (void)rig.drive.rearm(rig.now);
   }
   EXPECT_EQ(guard.allocations(), 0U);
   EXPECT_EQ(guard.frees(), 0U);

@@ -78,8 +78,8 @@ TEST(RmpDrive, PitchIsThatOfTheBody) {
   Rig rig;
   (void)rig.run_until(0.5, kStand);
   double most = 0.0;
-  for (int beat = 0; beat < 100; ++beat) {
-    (void)rig.beat({.forward_mps = 0.004 * beat});
+  for (int cycle = 0; cycle < 100; ++cycle) {
+    (void)rig.cycle({.forward_mps = 0.004 * cycle});
     const double truth = rig.segway.base().state_at(rig.odometry.stamp).pitch_rad;
     EXPECT_NEAR(rig.odometry.pitch_rad, truth, 0.012);  // a set of 10 ms, noise, and a count is 0.13 degrees
     most = std::max(most, rig.odometry.pitch_rad);

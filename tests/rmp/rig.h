@@ -36,8 +36,8 @@ struct Rig {
     if (const auto started = drive.start(); !started) ADD_FAILURE() << started.error().message;
   }
 
-  /// One beat of 10 ms: what the motion loop does, in its order. \return what the command came to.
-  tl::expected<void, hal::DriveFailure> beat(const hal::Twist& twist) {
+  /// One cycle of 10 ms: what the motion loop does, in its order. \return what the command came to.
+  tl::expected<void, hal::DriveFailure> cycle(const hal::Twist& twist) {
     now += seconds(0.010);
     if (const auto heard = drive.odometry(now)) odometry = *heard;
     return drive.command(twist, now);
@@ -46,7 +46,7 @@ struct Rig {
   /// Beats until `s` seconds after the beginning. \return what the last command came to.
   tl::expected<void, hal::DriveFailure> run_until(double s, const hal::Twist& twist) {
     tl::expected<void, hal::DriveFailure> last;
-    while (now < at(s)) last = beat(twist);
+    while (now < at(s)) last = cycle(twist);
     return last;
   }
 
@@ -54,7 +54,7 @@ struct Rig {
   std::optional<double> run_until_fault(hal::DriveFault fault, const hal::Twist& twist) {
     const MonoTime begin = now;
     while (now < begin + seconds(2.0)) {
-      (void)beat(twist);
+      (void)cycle(twist);
       if (drive.fault() == fault) return to_seconds(now - begin);
     }
     return std::nullopt;

@@ -101,15 +101,15 @@ TEST(SimulatedRmp, LeansIntoItsAccelerationAndSettles) {
   BaseParameters parameters;
   parameters.max_acceleration_mps2 = 0.4;
   Bench bench(parameters);
-  double most = 0.0, least = 0.0, least_x = 0.0;
+  double most = 0.0, least = 0.0, min_x = 0.0;
   for (const auto& state : bench.drive_until(2.5, velocity(0.4))) {
     most = std::max(most, state.pitch_rad);
-    least_x = std::min(least_x, state.x_m);
+    min_x = std::min(min_x, state.x_m);
   }
   EXPECT_GT(most, 2.0 * kDegree);  // 0.4 / 9.81 is 2.3 degrees
   EXPECT_LT(most, 3.0 * kDegree);
-  EXPECT_LT(least_x, 0.0) << "a balancing robot rolls back before it goes forward";
-  EXPECT_GT(least_x, -0.01);
+  EXPECT_LT(min_x, 0.0) << "a balancing robot rolls back before it goes forward";
+  EXPECT_GT(min_x, -0.01);
   EXPECT_NEAR(bench.state().pitch_rad, 0.0, 0.05 * kDegree);
   EXPECT_NEAR(bench.state().velocity.forward_mps, 0.4, 0.01);
 
@@ -274,16 +274,16 @@ TEST(SimulatedRmpProperty, HowOftenItIsAskedDoesNotMatter) {
   for (int trial = 0; trial < 20; ++trial) {
     Bench steady, restless;
     std::string one, other;
-    for (int beat = 1; beat <= 200; ++beat) {
+    for (int cycle = 1; cycle <= 200; ++cycle) {
       const std::string order = velocity(random.real(-1.0, 1.0));
       steady.tell(order);
       restless.tell(order);
       for (auto asked = random.whole(0, 5); asked > 0; --asked) {
-        const MonoTime early = kBegin + seconds(0.010 * (beat - 1)) + Duration{random.whole(0, 9'999'999)};
+        const MonoTime early = kBegin + seconds(0.010 * (cycle - 1)) + Duration{random.whole(0, 9'999'999)};
         (void)restless.segway.base().state_at(early);
       }
-      for (const auto& f : steady.hear_until(0.010 * beat)) one += candump(f);
-      for (const auto& f : restless.hear_until(0.010 * beat)) other += candump(f);
+      for (const auto& f : steady.hear_until(0.010 * cycle)) one += candump(f);
+      for (const auto& f : restless.hear_until(0.010 * cycle)) other += candump(f);
     }
     ASSERT_EQ(one, other);
     const auto a = steady.state(), b = restless.state();
@@ -337,10 +337,10 @@ TEST(VirtualSegwayStress, TheTruthMayBeAskedForFromAnotherThread) {
       ++compared;
     }
   });
-  for (int beat = 0; beat < 3000; ++beat) {
-    (void)rig.beat({.forward_mps = 0.3});
+  for (int cycle = 0; cycle < 3000; ++cycle) {
+    (void)rig.cycle({.forward_mps = 0.3});
     driven_to_ns.store(rig.now.time_since_epoch().count());
-    if (beat % 50 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    if (cycle % 50 == 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
   done.store(true);
   camera.join();

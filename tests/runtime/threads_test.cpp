@@ -15,7 +15,7 @@ TEST(RobotThreads, AllStartAndStopTogether) {
   RealClock clock;
   const auto body = [&] {
     // Real-time threads that did not sleep would take the machine.
-    for (Periodic beat(clock, std::chrono::milliseconds(1)); !stop.requested();) beat.wait();
+    for (Periodic cycle(clock, std::chrono::milliseconds(1)); !stop.requested();) cycle.wait();
   };
   for (const auto& spec : kRobotThreads) ASSERT_TRUE(threads.start(spec, body)) << spec.name;
   threads.stop_and_join();

@@ -25,8 +25,8 @@ geometry::Pose mount() {
   return X_RC;
 }
 
-config::StartMarker marker_on_the_wall() {
-  config::StartMarker marker;
+calibration::Marker marker_on_the_wall() {
+  calibration::Marker marker;
   marker.id = 7;
   marker.side_m = 0.3;
   marker.x_m = 5.0;
@@ -37,7 +37,7 @@ config::StartMarker marker_on_the_wall() {
 }
 
 /// What a camera sees of the marker on a white wall: its corners by hand, its inside by a perspective.
-cv::Mat photograph(const config::StartMarker& marker, const geometry::Camera& camera, const geometry::Pose& X_WC) {
+cv::Mat photograph(const calibration::Marker& marker, const geometry::Camera& camera, const geometry::Pose& X_WC) {
   cv::Mat square;
   cv::aruco::drawMarker(cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_50), marker.id, 240, square, 1);
   const double half = 0.5 * marker.side_m;
@@ -67,7 +67,7 @@ TEST(BootPose, AMarkerOfKnownPlaceSaysWhereTheCameraIs) {
   for (const double heading_deg : {-12.0, 3.0, 12.0}) {
     const geometry::Pose X_WC = geometry::pose_on_floor(3.2, 2.5, heading_deg * kDegree - 0.2) * mount();
     const cv::Mat picture = photograph(marker, camera, X_WC);
-    const auto found = camera_by_marker(marker, camera, view_of(picture));
+    const auto found = calibration::camera_by_marker(marker, camera, view_of(picture));
     ASSERT_TRUE(found) << heading_deg;
     const auto error = geometry::step_between(X_WC, *found);
     EXPECT_LT(error.head<3>().norm(), 0.05) << heading_deg;
@@ -80,8 +80,9 @@ TEST(BootPose, AnotherMarkerOrNoneSaysNothing) {
   auto marker = marker_on_the_wall();
   const cv::Mat picture = photograph(marker, camera, geometry::pose_on_floor(3.2, 2.2, 0.0) * mount());
   marker.id = 8;
-  EXPECT_FALSE(camera_by_marker(marker, camera, view_of(picture)));
-  EXPECT_FALSE(camera_by_marker(marker_on_the_wall(), camera, view_of(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)))));
+  EXPECT_FALSE(calibration::camera_by_marker(marker, camera, picture));
+  EXPECT_FALSE(calibration::camera_by_marker(marker_on_the_wall(), camera,
+                                             view_of(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)))));
 }
 
 TEST(BootPose, WhatTheLastRunLeftComesFirst) {

@@ -49,12 +49,12 @@ class FramePath : public ::testing::Test {
     return parameters;
   }
 
-  /// One image through vision, and the motion beats until the next.
+  /// One image through vision, and the motion control cycles until the next.
   void cycle(std::uint64_t number, bool absent = false) {
     ASSERT_TRUE(links_.images.push(camera_.image(number, absent)));
     ASSERT_TRUE(vision_.step());
     const MonoTime next{static_cast<std::int64_t>(number + 1) * PaintedCamera::kPeriod};
-    for (; beat_ < next; beat_ += kMotionPeriod) motion_.step(beat_);
+    for (; cycle_ < next; cycle_ += kMotionPeriod) motion_.step(cycle_);
     while (const auto report = links_.reports.pop()) frame_ = report->frame;
     while (links_.pictures.pop()) {
     }
@@ -73,7 +73,7 @@ class FramePath : public ::testing::Test {
   VisionTask vision_;
   MotionLoop motion_loop_;
   MotionTask motion_;
-  MonoTime beat_{};
+  MonoTime cycle_{};
   stages::FrameResult frame_;
   MotionStatus status_;
 };
@@ -106,7 +106,7 @@ TEST_F(FramePath, WithoutImagesTheDeadManStopsTheWheels) {
   for (std::uint64_t i = 0; i < 200; ++i) cycle(i);
   ASSERT_NE(status_.commanded.left_radps, 0.0);
   const MonoTime last_stamp{199 * PaintedCamera::kPeriod};
-  while (beat_ < last_stamp + seconds(0.17)) motion_.step(beat_ += kMotionPeriod);
+  while (cycle_ < last_stamp + seconds(0.17)) motion_.step(cycle_ += kMotionPeriod);
   while (const auto status = links_.motions.pop()) status_ = *status;
   EXPECT_EQ(status_.cause, StopCause::kGoalStale);
   EXPECT_EQ(status_.commanded.forward_mps, 0.0);

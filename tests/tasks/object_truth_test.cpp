@@ -86,7 +86,7 @@ TEST(ObjectTruth, NearestCountsOnlyWhatTheRobotDidItself) {
   run.truth.distance_m = 1.5;
   run.images(1);
   EXPECT_DOUBLE_EQ(*run.statistics().nearest_by_own_motion, 0.75);
-  EXPECT_DOUBLE_EQ(run.statistics().smallest_distance_m, 1.0);
+  EXPECT_DOUBLE_EQ(run.statistics().min_distance_m, 1.0);
 }
 
 TEST(ObjectTruth, TakesTheTimeFromALossToZeroAndToStanding) {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 
 namespace cgsr::tasks::testing {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pipeline/color/color_model.h"
+#include "pipeline/color/learn/color_model.h"
 #include "platform/box.h"
 #include "platform/image_lease.h"
 

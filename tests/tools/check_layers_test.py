@@ -34,10 +34,10 @@ class CheckLayers(unittest.TestCase):
         self.assertIn(words, result.stdout)
 
     def test_a_chapter_that_includes_a_device(self):
-        self.assert_caught({"hal/camera.h": "", "pipeline/color/a.cpp": '#include "hal/camera.h"\n'}, "pipeline/color/a.cpp:1")
+        self.assert_caught({"hal/camera.h": "", "pipeline/color/learn/a.cpp": '#include "hal/camera.h"\n'}, "pipeline/color/learn/a.cpp:1")
 
     def test_a_chapter_that_reads_a_clock(self):
-        self.assert_caught({"platform/clock.h": "", "pipeline/color/a.cpp": '\n#include "platform/clock.h"\n'}, "pipeline/color/a.cpp:2")
+        self.assert_caught({"platform/clock.h": "", "pipeline/color/learn/a.cpp": '\n#include "platform/clock.h"\n'}, "pipeline/color/learn/a.cpp:2")
 
     def test_a_chapter_with_a_thread(self):
         self.assert_caught({"pipeline/imaging/a.h": "#include <thread>\n"}, "knows no device, thread or clock")
@@ -46,13 +46,13 @@ class CheckLayers(unittest.TestCase):
         self.assert_caught({"pipeline/runtime/b.h": "", "platform/a.h": '#include "pipeline/runtime/b.h"\n'}, "platform may not include")
 
     def test_a_chapter_that_reads_a_configuration(self):
-        self.assert_caught({"platform/config/reader.h": "", "pipeline/color/a.h": '#include "platform/config/reader.h"\n'}, "pipeline/color may not include")
+        self.assert_caught({"platform/config/reader.h": "", "pipeline/color/learn/a.h": '#include "platform/config/reader.h"\n'}, "pipeline/color/learn may not include")
 
     def test_a_loop_that_knows_the_simulation(self):
         self.assert_caught({"hal/simulation.h": "", "pipeline/vision_loop.h": '#include "hal/simulation.h"\n'}, "src only")
 
     def test_chapters_that_know_each_other(self):
-        self.assert_caught({"pipeline/color/b.h": "", "pipeline/localization/a.h": '#include "pipeline/color/b.h"\n'}, "pipeline/localization may not include")
+        self.assert_caught({"pipeline/color/learn/b.h": "", "pipeline/localization/a.h": '#include "pipeline/color/learn/b.h"\n'}, "pipeline/localization may not include")
 
     def test_a_peer_outside_the_lab(self):
         self.assert_caught({"src/a.cpp": "#include <opencv2/tracking.hpp>\n"}, "tools/lab only")

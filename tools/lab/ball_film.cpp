@@ -121,7 +121,7 @@ void light_up(sim::WorldSpec& spec) {
 
 }  // namespace
 
-std::string_view name_of(BallScene scene) {
+std::string_view to_string(BallScene scene) {
   constexpr std::array<std::string_view, kBallScenes> kNames{"above the table", "on the way", "under it, in shadow",
                                                              "under it, lit",   "returned",   "brown ball above it"};
   return kNames.at(static_cast<std::size_t>(scene));

@@ -27,7 +27,7 @@ enum class BallScene : std::uint8_t {
   kBrown,       ///< the orange one is gone; the brown one is above the table.
 };
 inline constexpr int kBallScenes = 6;
-std::string_view name_of(BallScene scene);
+std::string_view to_string(BallScene scene);
 
 /// The film of section 5.4.3, by the simulator: the home's living room in the evening with a ball-shaped lamp, a still camera 5 m from the
 /// table, an orange ball (20 cm) above the table, under it in shadow, under it lit, leaving and returning; then a brown one above the table.

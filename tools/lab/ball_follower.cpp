@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/color/learn.h"
+#include "pipeline/color/learn/learn.h"
 #include "platform/count_marks.h"
 #include "tools/lab/film.h"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/color/integrated_tracker.h"
+#include "pipeline/color/ball/integrated_tracker.h"
 #include "platform/box.h"
 #include "platform/error.h"
 #include "src/config/color.h"

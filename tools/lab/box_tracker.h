@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/color/light.h"
+#include "pipeline/color/learn/light.h"
 #include "platform/box.h"
 #include "platform/error.h"
 #include "tools/lab/image.h"

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "src/commands/option_checks.h"
+#include "src/commands/parse_error.h"
 #include "src/config/load.h"
-#include "src/option_checks.h"
-#include "src/parse_error.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/shaded_views.h"

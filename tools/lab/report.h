@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "pipeline/color/light.h"
+#include "pipeline/color/learn/light.h"
 #include "tools/lab/statistics.h"
 
 namespace cgsr::lab {

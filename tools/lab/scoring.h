@@ -1,6 +1,6 @@
 #pragma once
 
-#include "src/scoring.h"
+#include "src/scoring/scoring.h"
 
 namespace cgsr::lab {
 

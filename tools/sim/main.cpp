@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
-#include "src/option_checks.h"
-#include "src/parse_error.h"
+#include "src/commands/option_checks.h"
+#include "src/commands/parse_error.h"
 #include "tools/sim/export_world.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"

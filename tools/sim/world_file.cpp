@@ -26,11 +26,11 @@ std::vector<fs::path> folders_of(const std::string& kind) {
 }
 
 template <class Things, class Name>
-Result<int> find_named(const Things& things, const std::string& wanted, const char* what, const Name& name_of) {
+Result<int> find_named(const Things& things, const std::string& wanted, const char* what, const Name& to_string) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < things.size(); ++i) {
-    if (name_of(things[i]) == wanted) return static_cast<int>(i);
-    names.push_back(fmt::format("'{}'", name_of(things[i])));
+    if (to_string(things[i]) == wanted) return static_cast<int>(i);
+    names.push_back(fmt::format("'{}'", to_string(things[i])));
   }
   return fail(fmt::format("there is no {} '{}'; there {}", what, wanted,
                           names.empty() ? "is none" : fmt::format("are {}", fmt::join(names, ", "))));

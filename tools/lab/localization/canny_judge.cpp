@@ -27,7 +27,7 @@ std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& ma
                                        const geometry::Pose& X_WC) {
   constexpr double kStep_px = 5.0;
   constexpr int kFarthest_px = 20;
-  const double least_cosine = std::cos(20.0 * std::numbers::pi / 180.0);
+  const double min_cosine = std::cos(20.0 * std::numbers::pi / 180.0);
   cv::Mat smooth;
   cv::Mat edges;
   cv::Mat dx;
@@ -62,7 +62,7 @@ std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& ma
         for (int x = static_cast<int>(p.x()) - kFarthest_px; x <= static_cast<int>(p.x()) + kFarthest_px; ++x) {
           if (x < 0 || y < 0 || x >= grey.cols || y >= grey.rows || edges.at<std::uint8_t>(y, x) == 0) continue;
           const Vector2d gradient(dx.at<float>(y, x), dy.at<float>(y, x));
-          if (std::abs(gradient.normalized().dot(normal)) < least_cosine) continue;
+          if (std::abs(gradient.normalized().dot(normal)) < min_cosine) continue;
           nearest = std::min(nearest, (Vector2d(x, y) - p).norm());
         }
       }

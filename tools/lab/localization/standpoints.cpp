@@ -93,7 +93,7 @@ TrueEdges::TrueEdges(const sim::Scene& scene) {
   edges_ = each_once(edges_);
 }
 
-int TrueEdges::seen(Place& place, const geometry::Pose& X_WC, double least_px) const {
+int TrueEdges::seen(Place& place, const geometry::Pose& X_WC, double min_px) const {
   const sim::Tracer& tracer = place.renderer().tracer();
   const sim::CameraModel& camera = place.camera();
   const geometry::Pose X_CW = X_WC.inverse();
@@ -136,7 +136,7 @@ int TrueEdges::seen(Place& place, const geometry::Pose& X_WC, double least_px) c
       last = at;
       was_visible = visible;
     }
-    if (longest_px >= least_px) ++count;
+    if (longest_px >= min_px) ++count;
   }
   return count;
 }
@@ -177,7 +177,7 @@ std::optional<Standpoint> draw_standpoint(Place& place, const TrueEdges& edges, 
     }
     if (!free) continue;
     at.edges = edges.seen(place, at.X_WC);
-    if (at.edges >= view.least_edges && at.edges <= view.most_edges) return at;
+    if (at.edges >= view.min_edges && at.edges <= view.most_edges) return at;
   }
   return std::nullopt;
 }

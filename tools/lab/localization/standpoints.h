@@ -20,8 +20,8 @@ class TrueEdges {
  public:
   explicit TrueEdges(const sim::Scene& scene);
 
-  /// \return how many edges have a piece of at least `least_px` in one go that nothing hides.
-  [[nodiscard]] int seen(Place& place, const geometry::Pose& X_WC, double least_px = 20.0) const;
+  /// \return how many edges have a piece of at least `min_px` in one go that nothing hides.
+  [[nodiscard]] int seen(Place& place, const geometry::Pose& X_WC, double min_px = 20.0) const;
 
   [[nodiscard]] std::size_t size() const { return edges_.size(); }
 
@@ -48,7 +48,7 @@ struct Standpoint {
 };
 
 struct View {
-  int least_edges = 6;
+  int min_edges = 6;
   int most_edges = 1 << 20;
 };
 

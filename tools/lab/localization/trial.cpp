@@ -62,7 +62,7 @@ void Tally::add(const Outcome& outcome) {
   ++trials;
   wrong += outcome.false_correction() ? 1 : 0;
   if (!outcome.answer.corrected) {
-    ++refused[std::string(name_of(outcome.answer.reason))];
+    ++refused[std::string(to_string(outcome.answer.reason))];
     return;
   }
   ++corrected;

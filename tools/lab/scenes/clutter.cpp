@@ -68,12 +68,12 @@ void turn(Leaf& leaf, Random& random) {
 }
 
 /// Many small leaves, few large ones.
-Leaf random_leaf(int width_px, int height_px, double least_px, double most_px, Random& random) {
+Leaf random_leaf(int width_px, int height_px, double min_px, double most_px, Random& random) {
   Leaf leaf;
   leaf.x = random.uniform(0.0, width_px);
   leaf.y = random.uniform(0.0, height_px);
   const double draw = random.uniform();
-  leaf.along = 0.5 * (least_px + (most_px - least_px) * draw * draw);
+  leaf.along = 0.5 * (min_px + (most_px - min_px) * draw * draw);
   leaf.across = leaf.along * random.uniform(0.3, 1.0);
   leaf.outline = static_cast<Outline>(random.below(3));
   if (random.chance(0.7)) turn(leaf, random);

@@ -29,7 +29,7 @@ Box random_place(double width_px, double height_px, Random& random) {
 }
 
 Exposure random_exposure(const Light& light, const Wear& wear, Random& random) {
-  return {light, random.below(wear.most_blur_passes + 1), random.uniform(wear.least_noise, wear.most_noise)};
+  return {light, random.below(wear.most_blur_passes + 1), random.uniform(wear.min_noise, wear.most_noise)};
 }
 
 Light assumed_light(const ImageView& yuyv, const Box& box) {

@@ -16,8 +16,8 @@ inline constexpr double kLearningLight = 0.8;
 /// What a camera may do to an image besides the light; drawn anew for each image.
 struct Wear {
   int most_blur_passes = 2;
-  double least_noise = 1.0;  ///< 1/255
-  double most_noise = 4.0;   ///< 1/255
+  double min_noise = 1.0;   ///< 1/255
+  double most_noise = 4.0;  ///< 1/255
 };
 
 /// One object, never seen before, its picture to learn from, and any number of other scenes to find it in.

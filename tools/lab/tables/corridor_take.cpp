@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "hal/sim/scene/portable_math.h"
-#include "pipeline/color/learn.h"
-#include "pipeline/color/light_history.h"
+#include "pipeline/color/learn/learn.h"
+#include "pipeline/color/track/light_history.h"
 #include "tools/lab/scoring.h"
 #include "tools/lab/trackers.h"
 

@@ -141,7 +141,7 @@ Result<void> judge(ProbeRoom& room, const Case& which, double angle_deg, Random&
     ++outcome.answered;
   } else {
     const bool seen = observation.status == illumination::ObservationStatus::kSeen;
-    ++outcome.unanswered[std::string(seen ? name_of(lamps.status) : name_of(observation.status))];
+    ++outcome.unanswered[std::string(seen ? to_string(lamps.status) : to_string(observation.status))];
   }
   return {};
 }

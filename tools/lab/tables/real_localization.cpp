@@ -348,7 +348,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
                             PixelFormat::kGrey8};
       const Outcome outcome =
           correct_once(localizer, image, trial.prior, {trial.X_WC, trial.X_WC, 0}, geometry::Pose::Identity());
-      if (!outcome.answer.corrected) ++refused[std::string(name_of(outcome.answer.reason))];
+      if (!outcome.answer.corrected) ++refused[std::string(to_string(outcome.answer.reason))];
       ours.add(outcome.answer.corrected ? std::optional(outcome.answer.X_WC) : std::nullopt, trial.X_WC, centre);
     }
     ours.add_rows(fmt::format("Castle-simu, {}, ours", from), report);

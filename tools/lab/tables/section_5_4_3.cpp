@@ -14,7 +14,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/color/model_file.h"
+#include "pipeline/color/learn/model_file.h"
 #include "platform/config/canonical.h"
 #include "src/boot/robot.h"
 #include "src/config/load.h"

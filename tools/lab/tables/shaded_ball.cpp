@@ -70,7 +70,7 @@ Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, 
   }
   draw_box(without, {0, 220, 255}, drawn);
   draw_box(with, {0, 255, 0}, drawn);
-  Picture picture{fmt::format("{}: with the mask green, without yellow; blue: may lie in shade", name_of(shot.scene)),
+  Picture picture{fmt::format("{}: with the mask green, without yellow; blue: may lie in shade", to_string(shot.scene)),
                   {}};
   cv::imencode(".jpg", drawn, picture.jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
   return picture;
@@ -242,7 +242,7 @@ Result<Report> shaded_ball(const Setting& setting) {
     report.rows.push_back(
         {name, "compared", "windows", std::nullopt, examined, std::nullopt, takes * BallFilm::kImages});
     for (int k = 0; k < kBallScenes; ++k) {
-      add_score(fmt::format("{}: {}", name, name_of(static_cast<BallScene>(k))),
+      add_score(fmt::format("{}: {}", name, to_string(static_cast<BallScene>(k))),
                 sum.of_scene[static_cast<std::size_t>(k)], std::nullopt, report);
     }
   }

@@ -47,7 +47,7 @@ void judge(const sim::Pose& X_WR, const Eigen::Vector3d& p_WL, const illuminatio
   ++trials.asked;
   if (lamps.count == 0 || lamps.lamp[0].status != LampStatus::kFound) {
     const bool seen = observation.status == illumination::ObservationStatus::kSeen;
-    ++trials.unanswered[std::string(seen ? name_of(lamps.status) : name_of(observation.status))];
+    ++trials.unanswered[std::string(seen ? to_string(lamps.status) : to_string(observation.status))];
     return;
   }
   const auto& lamp = lamps.lamp[0];

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "pipeline/color/learn/color_model.h"
+#include "pipeline/color/search/search_types.h"
+#include "pipeline/color/track/local_tracker.h"
+#include "pipeline/imaging/reduce.h"
+#include "platform/box.h"
+#include "platform/error.h"
+#include "platform/image_view.h"
+#include "platform/parameters.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::color {
+
+enum class TrackMode : std::uint8_t {
+  kPlain,  ///< Alg. 3.2 as the dissertation has it: one size, plain bins, the best window below the threshold, no prior.
+  kFull,   ///< ours: the same search of the whole image, three sizes, and a local tracker that makes the box fit.
+};
+
+inline constexpr std::array kTrackModeNames{
+    Named<TrackMode>{"plain", TrackMode::kPlain},
+    Named<TrackMode>{"full", TrackMode::kFull},
+};
+
+/// When the local tracker is doubted, and what makes a place elsewhere in the image more credible. Scores are compared with their running
+/// mean while the object was surely seen, divergences with theirs.
+struct DoubtParameters {
+  int warm_up_images = 8;
+  double mean_rate = 0.05;
+  double min_sure_sharpness = 8.0;
+  double min_sure_score = 0.8;
+  double max_divergence_rise = 0.1;
+  double min_agreement = 0.62;
+  int max_foreign_images = 5;
+  int max_doubtful_images = 3;
+  double min_stay_sharpness = 8.0;
+  double min_stay_score = 0.7;
+  double min_reacquire_score = 0.75;
+  double min_reacquire_agreement = 0.9;
+  double min_found_sharpness = 14.0;
+  double min_found_score = 0.45;
+  double min_found_agreement = 0.86;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("warm_up_images", self.warm_up_images, {0, 1000}, "",
+                 "The number of images after a detection in which the running means are not used; the thresholds of "
+                 "the first detection apply instead.");
+    visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "",
+                 "The weight of each reliable image in the running means.");
+    visit.number("min_sure_sharpness", self.min_sure_sharpness, {0.0, 50.0}, "",
+                 "A response is doubtful when its peak is less sharp than this and both its score and its divergence "
+                 "are bad as well.");
+    visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "",
+                 "The score below which a response can be doubtful, as a ratio of the mean score.");
+    visit.number("max_divergence_rise", self.max_divergence_rise, {0.0, 0.7}, "nat",
+                 "The rise of the divergence above its mean beyond which a response can be doubtful.");
+    visit.number("min_agreement", self.min_agreement, {0.0, 1.0}, "",
+                 "A box that contains less of the learned colours than this holds another object, however reliable the "
+                 "local tracker is.");
+    visit.number("max_foreign_images", self.max_foreign_images, {1, 1000}, "",
+                 "Tracking ends after this many consecutive images with another object in the box.");
+    visit.number("max_doubtful_images", self.max_doubtful_images, {1, 1000}, "",
+                 "The object is lost after this many doubtful images.");
+    visit.number("min_stay_sharpness", self.min_stay_sharpness, {0.0, 50.0}, "",
+                 "The peak sharpness with which the object is found again in the place where it was lost.");
+    visit.number(
+        "min_stay_score", self.min_stay_score, {0.0, 2.0}, "",
+        "The score with which the object is found again in the place where it was lost, as a ratio of the mean score.");
+    visit.number("min_reacquire_score", self.min_reacquire_score, {0.0, 2.0}, "",
+                 "The score with which the object is found again elsewhere with its last appearance, as a ratio of the "
+                 "mean score.");
+    visit.number("min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
+                 "The agreement with the learned colour amounts, corrected for the light, that finding it again "
+                 "elsewhere requires.");
+    visit.number("min_found_sharpness", self.min_found_sharpness, {0.0, 50.0}, "",
+                 "The peak sharpness that a first detection requires.");
+    visit.number("min_found_score", self.min_found_score, {0.0, 2.0}, "",
+                 "The score that a first detection requires, as a ratio of the score of the learned image itself.");
+    visit.number(
+        "min_found_agreement", self.min_found_agreement, {0.0, 1.0}, "",
+        "The agreement with the learned colour amounts, corrected for the light, that a first detection requires.");
+  }
+};
+
+/// How an object is followed: the search (Alg. 3.2), and what mode full adds to it.
+struct TrackParameters {
+  TrackMode mode = TrackMode::kFull;
+  double max_divergence = 0.40;
+  int candidates = 3;
+  double max_size_ratio = 5.0;
+  SearchParameters search;
+  LocalParameters local;
+  DoubtParameters doubt;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.choice("mode", self.mode, kTrackModeNames,
+                 "Choose plain for the dissertation's Alg. 3.2, and full for this project's extended tracker.");
+    visit.number("max_divergence", self.max_divergence, {0.0, 0.7}, "nat",
+                 "A window that differs more than this from every learned histogram is not the object.");
+    visit.number("candidates", self.candidates, {1, kMaxMatches}, "",
+                 "The number of best windows of the search that are examined closely.");
+    visit.number("max_size_ratio", self.max_size_ratio, {1.0, 20.0}, "",
+                 "The largest ratio between a side of the box and the learned one, upwards and downwards.");
+    visit.section("search", self.search, "The search over the whole image");
+    visit.section("local", self.local, "The local tracker");
+    visit.section("doubt", self.doubt, "The criteria by which the tracker's answer is doubted, lost and found again");
+  }
+};
+
+/// Where the object is in one image.
+struct TrackedObject {
+  bool found = false;
+  Box box;                  ///< camera pixels, inside the image; read only when found, as all below.
+  double divergence = 0.0;  ///< [nat] of the box from the learned histogram, under the light that fits best.
+  Light light;              ///< the light of the grid that fits best; never preferred in the next image (3.2.2).
+  Light exact_light;        ///< the same, not bound to the grid.
+};
+
+/// Follows a learned object from image to image, by what a search of the whole image (ObjectSearch) found in each (chapter 3).
+///
+/// Threads: one. Memory is reserved by create; track never allocates.
+class Tracker {
+ public:
+  /// \param max_width_px, max_height_px  the largest camera image that will come.
+  static Result<Tracker> create(const ColorModel& model, const TrackParameters& parameters, int max_width_px,
+                                int max_height_px);
+  Tracker(Tracker&&) noexcept;
+  Tracker& operator=(Tracker&&) noexcept;
+  ~Tracker();
+
+  /// The window size with which the next image is to be searched (ObjectSearch): as the object was last seen, or as it was learned.
+  [[nodiscard]] SearchSize search_size() const;
+
+  /// Says where the object is known to be, as in the image that it was learned from.
+  void place(const ImageView& image, const imaging::ReducedImage& reduced, const Box& box);
+
+  /// Which of the windows that a search found it is, or what became of the object since the last image, and the box that fits.
+  /// \param image  as the camera sent it. \param reduced  the same, reduced with ObjectSearch's labels. \param matches  of the search of this
+  ///        image, with search_size(). \param budget  asked once per closer look.
+  TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,
+                      WorkBudget& budget);
+
+ private:
+  struct State;
+  explicit Tracker(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cgsr::color

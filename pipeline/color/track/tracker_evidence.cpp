@@ -1,0 +1,99 @@
+// What speaks for a place being the object's: the measures behind Tracker::State.
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/color/track/tracker_boxes.h"
+#include "pipeline/color/track/tracker_state.h"
+
+namespace cgsr::color {
+namespace {
+
+constexpr int kRefinements = 3;
+// What a window of the search, which fits the object only roughly, must have of what is asked after refinement: most windows without the
+// object end here, at a third of the cost.
+constexpr double kGlanceScore = 0.75;
+constexpr double kGlanceSharpness = 0.5;
+constexpr double kGlanceAgreement = 0.65;
+
+}  // namespace
+
+Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) {
+  const LocalAnswer local_answer = local.look(pyramid, at);
+  return {local_answer, divergence.of(reduced, local_answer.box).divergence};
+}
+
+Tint Tracker::State::tint(const Box& at) const {
+  const ObjectView view = view_object(pyramid, at);
+  const Light gain = light_gain(learned_quantiles, channel_quantiles(view));
+  const ColorAmounts seen(relit(view, without_light({1.0, 1.0, 1.0}, gain)));
+  return {gain, learned_amounts.agreement(seen)};
+}
+
+bool Tracker::State::is_weak(const Place& place) const {
+  const DoubtParameters& doubt = parameters.doubt;
+  const bool warm = images_since_sight >= doubt.warm_up_images;
+  const double expected = warm ? doubt.min_sure_score * mean_score : doubt.min_found_score * first_score;
+  return place.local.sharpness < doubt.min_sure_sharpness && place.local.score < expected &&
+         place.divergence > mean_divergence + doubt.max_divergence_rise;
+}
+
+/// \return whether the object is where it was lost, as when something passed before it.
+bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
+  place = look(reduced, box);
+  return place.local.sharpness >= doubt.min_stay_sharpness && place.local.score >= doubt.min_stay_score * mean_score &&
+         place.divergence <= mean_divergence + doubt.max_divergence_rise &&
+         tint(place.local.box).agreement >= doubt.min_agreement;
+}
+
+/// Elsewhere, but as it looked last. A fast move blurs it, so that its shape says little; its colours must then be all there.
+/// \return whether one of the search's windows is surely the object; else `place` stays as it is.
+bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                               Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
+  Place best;
+  for (int i = 0; i < matches.count && budget.grant(); ++i) {
+    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
+    const Place other = look(reduced, centred_on(window, box.width, box.height));
+    if (other.local.score > best.local.score) best = other;
+  }
+  if (best.local.score < doubt.min_reacquire_score * mean_score) return false;
+  if (best.divergence > mean_divergence + doubt.max_divergence_rise) return false;
+  if (tint(best.local.box).agreement < doubt.min_reacquire_agreement) return false;
+  place = best;
+  return true;
+}
+
+/// First sight, sight again after a loss, or elsewhere: each window of the search is looked at under its own light.
+/// \return whether one of them is surely the object; else `place` stays as it is.
+bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                          Place& place) {
+  const DoubtParameters& doubt = parameters.doubt;
+  LocalAnswer best;
+  Tint seen;
+  for (int i = 0; i < matches.count && budget.grant(); ++i) {
+    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
+    const Tint its_tint = tint(window);
+    if (its_tint.agreement < kGlanceAgreement * doubt.min_found_agreement) continue;
+    const LocalAnswer its_answer = local.look_under(its_tint.gain, pyramid, centred_on(window, box.width, box.height));
+    if (its_answer.score <= best.score) continue;
+    best = its_answer;
+    seen = its_tint;
+  }
+  if (best.score < kGlanceScore * doubt.min_found_score * first_score) return false;
+  if (best.sharpness < kGlanceSharpness * doubt.min_found_sharpness) return false;
+  for (int round = 0; round < kRefinements && budget.grant(); ++round) {
+    best = local.look_under(seen.gain, pyramid, best.box);
+    best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.max_size_ratio);
+    seen = tint(best.box);
+  }
+  const double its_divergence = divergence.of(reduced, best.box).divergence;
+  if (best.sharpness < doubt.min_found_sharpness || best.score < doubt.min_found_score * first_score) return false;
+  if (seen.agreement < doubt.min_found_agreement || its_divergence > parameters.max_divergence) return false;
+  place = {best, its_divergence};
+  local.believe_light(seen.gain);
+  images_since_sight = 0;
+  return true;
+}
+
+}  // namespace cgsr::color

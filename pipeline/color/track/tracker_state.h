@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "pipeline/color/search/box_divergence.h"
+#include "pipeline/color/track/color_agreement.h"
+#include "pipeline/color/track/light_estimate.h"
+#include "pipeline/color/track/tracker.h"
+
+namespace cgsr::color {
+
+/// A place for the object, with what is known in favour of it.
+struct Place {
+  LocalAnswer local;
+  double divergence = 0.0;
+};
+
+/// The colours of a place, against the learned ones.
+struct Tint {
+  Light gain;              ///< of the light, from the learned image's.
+  double agreement = 0.0;  ///< ColorAmounts::agreement with that light taken out.
+};
+
+/// Mode plain is Alg. 3.2 alone. The rest is ours: doubt, loss and finding again, of which the dissertation (3.2.2) says nothing.
+struct Tracker::State {
+  State(const ColorModel& m, const TrackParameters& p, int max_width_px, int max_height_px)
+      : model(m),
+        parameters(p),
+        divergence(m, p.search.divergence),
+        pyramid(max_width_px, max_height_px),
+        local(p.local) {
+    learn_from_model();
+  }
+
+  void learn_from_model();
+  void keep_colors(const ObjectView& view);
+  [[nodiscard]] SearchSize search_size() const;
+  TrackedObject track_plain(const SearchResult& matches) const;
+  TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
+  Place look(const imaging::ReducedImage& reduced, const Box& box);
+  [[nodiscard]] Tint tint(const Box& at) const;
+  /// Where it will come back, it may be nearer or farther: one size after the other, in different images.
+  [[nodiscard]] double lost_scale() const {
+    constexpr std::array kScales{1.0, 0.7, 1.4};
+    return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
+  }
+  [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.max_doubtful_images; }
+  void start_again();
+  [[nodiscard]] bool is_weak(const Place& place) const;
+  bool stayed(const imaging::ReducedImage& reduced, Place& place);
+  bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
+  bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
+  [[nodiscard]] TrackedObject answer(const Light& gain, double divergence_of_box) const;
+
+  ColorModel model;
+  TrackParameters parameters;
+  BoxDivergence divergence;
+  imaging::Pyramid pyramid;
+  LocalTracker local;
+  ChannelQuantiles learned_quantiles;
+  ColorAmounts learned_amounts;
+  Light learned_light;
+
+  bool located = false;  ///< `box` is where the object was in the last image.
+  Box box;
+  double mean_score = 0.0;
+  double mean_divergence = 0.0;
+  int images_since_sight = 0;
+  int weak_images = 0;         ///< in a row.
+  int images_lost = 0;         ///< in a row.
+  int max_foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
+  double first_score = 0.0;
+  double first_divergence = 0.0;
+};
+
+}  // namespace cgsr::color

@@ -1,0 +1,242 @@
+#include "src/commands/localize_run.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/world/load.h"
+#include "platform/count_marks.h"
+#include "platform/work_budget.h"
+#include "src/config/load.h"
+#include "src/input/camera_file.h"
+#include "src/input/robot_calibration.h"
+#include "src/plug_in/expectation.h"
+
+namespace cgsr::app {
+namespace {
+
+constexpr int kMostLooks = 200;  // at one image, while a search is under way
+
+Result<config::Localization> configuration_of(const LocalizeOptions& options) {
+  auto config = config::load_localization(options.config);
+  if (!config || options.method.empty()) return config;
+  for (const auto& [name, method] : localization::kMethodNames) {
+    if (name == options.method) config->localizer.method = method;
+  }
+  return config;
+}
+
+/// A pose to follow from was measured or found: it is believed better than one that odometry carried.
+localization::PriorSigmas start_sigmas(const config::PriorParameters& prior) {
+  constexpr double kPlace_m = 0.02;
+  constexpr double kTurn_deg = 1.0;
+  config::PriorParameters start = prior;
+  for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, kPlace_m);
+  for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, kTurn_deg);
+  return start.sigmas();
+}
+
+}  // namespace
+
+Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
+  LocalizeRun run;
+  State& state = *run.state_;
+  auto config = configuration_of(options);
+  if (!config) return tl::unexpected(config.error());
+  state.config = *config;
+  auto camera = read_camera(options.camera);
+  if (!camera) return tl::unexpected(camera.error());
+  state.camera = *camera;
+  if (auto opened = run.open_images(options); !opened) return tl::unexpected(opened.error());
+  auto map = world::load_map(options.map);
+  if (!map) return tl::unexpected(map.error());
+  state.map = std::move(*map);
+  if (state.map.edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
+  auto expectation = make_expectation(state.map, state.config.localizer);
+  if (!expectation) return tl::unexpected(expectation.error());
+  state.localizer.emplace(state.map, state.camera, state.config.localizer, std::move(*expectation));
+  if (auto opened = run.open_poses(options); !opened) return tl::unexpected(opened.error());
+  if (auto opened = run.open_outputs(options); !opened) return tl::unexpected(opened.error());
+  return run;
+}
+
+Result<void> LocalizeRun::open_images(const LocalizeOptions& options) {
+  auto input = ImageInput::open({.path = options.input});
+  if (!input) return tl::unexpected(input.error());
+  input_.emplace(std::move(*input));
+  const auto& mode = input_->mode();
+  const geometry::Camera& camera = state_->camera;
+  if (mode.width_px != camera.width_px || mode.height_px != camera.height_px) {
+    return fail(fmt::format("{}: images of {} x {} px: expected {} x {}, the size of the camera in {}", options.input,
+                            mode.width_px, mode.height_px, camera.width_px, camera.height_px, options.camera));
+  }
+  notes_ = input_->notes();
+  return {};
+}
+
+Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
+  if (!options.priors.empty()) {
+    auto priors = read_poses(options.priors);
+    if (!priors) return tl::unexpected(priors.error());
+    priors_ = std::move(*priors);
+    priors_file_ = options.priors;
+    return {};
+  }
+  const auto start = read_pose(options.pose);
+  if (!start) return tl::unexpected(start.error());
+  geometry::Pose X_RC = geometry::Pose::Identity();
+  if (!options.mount.empty()) {
+    const auto mount = std::filesystem::path(options.mount).extension() == ".toml" ? read_mount(options.mount)
+                                                                                   : read_pose(options.mount);
+    if (!mount) return tl::unexpected(mount.error());
+    X_RC = *mount;
+  } else if (state_->config.tracker.floor) {
+    return fail(
+        fmt::format("{}: tracker.floor = true needs --mount: where the camera is on the robot", options.config));
+  }
+  if (!options.odometry.empty()) {
+    auto odometry = read_poses(options.odometry);
+    if (!odometry) return tl::unexpected(odometry.error());
+    odometry_ = std::move(*odometry);
+    odometry_file_ = options.odometry;
+    // It carries a search along from image to image: none has to be finished in one.
+    if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
+  }
+  X_RC_ = X_RC;
+  state_->tracker.emplace(*state_->localizer, X_RC, state_->config.tracker);
+  state_->tracker->start(localization::prior_at(*start, start_sigmas(state_->config.prior)));
+  return {};
+}
+
+Result<void> LocalizeRun::open_outputs(const LocalizeOptions& options) {
+  if (!options.csv.empty()) {
+    auto csv = TextFile::create(options.csv);
+    if (!csv) return tl::unexpected(csv.error());
+    csv_.emplace(std::move(*csv));
+    if (auto head = csv_->add_line(fmt::format("frame,corrected,reason,{},matches,rms_px", kPoseColumns)); !head) {
+      return head;
+    }
+  }
+  if (!options.video.empty()) {
+    state_->expectation = std::make_unique<render::DepthRaster>(state_->map, render::RasterParameters{});
+    state_->overlay.emplace(state_->map, *state_->expectation, state_->camera);
+    auto video = VideoWriter::create(options.video, state_->overlay->picture_size(),
+                                     1.0 / to_seconds(input_->mode().frame_period));
+    if (!video) return tl::unexpected(video.error());
+    video_.emplace(std::move(*video));
+  }
+  return {};
+}
+
+Result<const PoseRow*> LocalizeRun::row_for(const std::vector<PoseRow>& rows, const std::string& file) const {
+  if (!rows.front().frame) {
+    const auto at = static_cast<std::size_t>(frame_);
+    if (at < rows.size()) return &rows[at];
+    return fail(fmt::format("{}: holds {} poses and none for image {}", file, rows.size(), frame_));
+  }
+  const auto found = std::ranges::lower_bound(rows, frame_, {}, [](const PoseRow& row) { return *row.frame; });
+  if (found != rows.end() && *found->frame == frame_) return &*found;
+  return fail(fmt::format("{}: holds no pose for image {}", file, frame_));
+}
+
+localization::Correction LocalizeRun::follow(const ImageView& image, std::uint32_t units) {
+  localization::PoseTracker& tracker = *state_->tracker;
+  auto budget = runtime::StageBudget::of_units(units);
+  // What the first image costs is not counted: its prior is wide.
+  const bool counted = images_ > 0;
+  if (counted) count_stage_begin();
+  for (int look = 0; look < kMostLooks; ++look) {
+    tracker.see(image, budget);
+    if (!state_->localizer->searching() || budget.refused()) break;
+  }
+  if (counted) units_most_ = std::max(units_most_, budget.granted());
+  if (counted) {
+    count_stage_end("localize");
+    count_image_end();
+  }
+  return tracker.now().correction;
+}
+
+Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
+  if (state_->tracker) {
+    geometry::Pose X_R0R1 = geometry::Pose::Identity();
+    if (!odometry_.empty()) {
+      const auto row = row_for(odometry_, odometry_file_);
+      if (!row) return tl::unexpected(row.error());
+      if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
+      X_OR_before_ = (*row)->X;
+      // About the floor instead of an axle of unknown height: a millimetre of the camera's height.
+      state_->tracker->pitched(geometry::pitch_of((*row)->X), 0.0);
+    }
+    // No robot waits for the first one: it is looked at until it says where the camera is.
+    if (images_ == 0) return follow(image, runtime::StageBudget::kAll);
+    const geometry::Pose X_WC_before = state_->tracker->now().X_WC;
+    const bool corrected_before = state_->tracker->now().correction.corrected;
+    state_->tracker->moved(odometry_.empty() ? X_RR_last_ : X_R0R1);
+    const localization::Correction answer = follow(image, units_);
+    // Without odometry: as it moved last, so it moves on; what ends a loss is no movement.
+    if (odometry_.empty())
+      X_RR_last_ = answer.corrected && corrected_before
+                       ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
+                       : geometry::Pose::Identity();
+    return answer;
+  }
+  const auto row = row_for(priors_, priors_file_);
+  if (!row) return tl::unexpected(row.error());
+  const auto prior = localization::prior_at((*row)->X, state_->config.prior.sigmas());
+  UnlimitedBudget budget;
+  localization::Correction answer;
+  state_->localizer->restart();
+  count_stage_begin();
+  for (int look = 0; look < kMostLooks; ++look) {
+    answer = state_->localizer->correct(image, prior, budget);
+    if (!state_->localizer->searching()) break;
+  }
+  count_stage_end("localize");
+  count_image_end();
+  return answer;
+}
+
+Result<void> LocalizeRun::write(const ImageView& image, const localization::Correction& answer) {
+  if (csv_) {
+    auto written =
+        csv_->add_line(fmt::format("{},{},{},{},{},{:.3f}", frame_, answer.corrected ? 1 : 0, to_string(answer.reason),
+                                   pose_as_csv(answer.X_WC), answer.matches, answer.rms_px));
+    if (!written) return written;
+  }
+  if (!video_) return {};
+  const Eigen::Vector3d& p = answer.X_WC.translation();
+  const std::string words = answer.corrected
+                                ? fmt::format("image {}   at {:.3f} {:.3f} {:.3f} m   {} matches   rms {:.2f} px",
+                                              frame_, p.x(), p.y(), p.z(), answer.matches, answer.rms_px)
+                                : fmt::format("image {}   not corrected: {}", frame_, to_string(answer.reason));
+  return video_->add(state_->overlay->draw(image, answer.X_WC, answer.corrected, words));
+}
+
+Result<bool> LocalizeRun::step() {
+  auto next = input_->next();
+  if (next.end) {
+    if (!next.problem.empty()) notes_.push_back(next.problem);
+    return false;
+  }
+  if (!next.image) {  // a damaged one: the next is another moment's
+    notes_.push_back(next.problem);
+    ++frame_;
+    return true;
+  }
+  const auto answer = look(next.image.view());
+  if (!answer) return tl::unexpected(answer.error());
+  if (auto written = write(next.image.view(), *answer); !written) return tl::unexpected(written.error());
+  corrected_ += answer->corrected ? 1 : 0;
+  ++images_;
+  ++frame_;
+  return true;
+}
+
+Result<void> LocalizeRun::finish() {
+  return video_ ? video_->close() : Result<void>{};
+}
+
+}  // namespace cgsr::app

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/geometry/camera.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/localization/pose_tracker.h"
+#include "pipeline/render/depth_raster.h"
+#include "pipeline/runtime/stage_budget.h"
+#include "pipeline/world/map.h"
+#include "platform/error.h"
+#include "src/config/localization.h"
+#include "src/input/image_input.h"
+#include "src/input/pose_file.h"
+#include "src/output/map_overlay.h"
+#include "src/output/text_file.h"
+#include "src/output/video_writer.h"
+
+namespace cgsr::app {
+
+/// The command line of `cgsr localize`; empty texts were not given.
+struct LocalizeOptions {
+  std::string map;
+  std::string camera;
+  std::string input;
+  std::string pose;
+  std::string priors;
+  std::string odometry;
+  std::string mount;
+  std::string method;
+  std::string config;
+  std::string csv;
+  std::string video;
+  std::string json;
+  int units = 60;  ///< of work at each image after the first that is followed on odometry; 0: all that it asks for.
+};
+
+/// Corrects the poses of a camera's images, one after the other: either follows from one pose, carried by odometry where there is some, or
+/// takes a prior for each image by itself.
+class LocalizeRun {
+ public:
+  /// Opens everything before the first image is looked at, so that what cannot be read or written is said at once.
+  static Result<LocalizeRun> open(const LocalizeOptions& options);
+
+  /// Looks at the next image. \return false at the end; an error is a file that could not be written, or an image that has no prior.
+  Result<bool> step();
+
+  /// What the video still holds is written.
+  Result<void> finish();
+
+  [[nodiscard]] const config::Localization& config() const { return state_->config; }
+  [[nodiscard]] int images() const { return images_; }
+  [[nodiscard]] int corrected() const { return corrected_; }
+  /// Units of work that the image which took most of them was granted, the first one of a followed camera aside.
+  [[nodiscard]] std::uint32_t max_units() const { return units_most_; }
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+  [[nodiscard]] const world::Map& map() const { return state_->map; }
+
+ private:
+  /// What must stay where it is while others point to it.
+  struct State {
+    config::Localization config;
+    world::Map map;
+    geometry::Camera camera;
+    std::optional<localization::Localizer> localizer;
+    std::optional<localization::PoseTracker> tracker;  ///< following; none: a prior for each image.
+    std::unique_ptr<render::DepthRaster> expectation;  ///< of the video.
+    std::optional<MapOverlay> overlay;
+  };
+
+  LocalizeRun() : state_(std::make_unique<State>()) {}
+
+  [[nodiscard]] Result<void> open_images(const LocalizeOptions& options);
+  [[nodiscard]] Result<void> open_poses(const LocalizeOptions& options);
+  [[nodiscard]] Result<void> open_outputs(const LocalizeOptions& options);
+  [[nodiscard]] Result<localization::Correction> look(const ImageView& image);
+  [[nodiscard]] localization::Correction follow(const ImageView& image, std::uint32_t units);
+  [[nodiscard]] Result<void> write(const ImageView& image, const localization::Correction& answer);
+  [[nodiscard]] Result<const PoseRow*> row_for(const std::vector<PoseRow>& rows, const std::string& file) const;
+
+  std::unique_ptr<State> state_;
+  std::optional<ImageInput> input_;
+  std::vector<PoseRow> priors_;
+  std::string priors_file_;
+  std::vector<PoseRow> odometry_;
+  std::string odometry_file_;
+  std::optional<geometry::Pose> X_OR_before_;
+  geometry::Pose X_RC_ = geometry::Pose::Identity();
+  geometry::Pose X_RR_last_ =
+      geometry::Pose::Identity();  ///< how the robot moved over the last image, where nothing says it.
+  std::optional<TextFile> csv_;
+  std::optional<VideoWriter> video_;
+  std::vector<std::string> notes_;
+  std::int64_t frame_ = 0;
+  int images_ = 0;
+  int corrected_ = 0;
+  std::uint32_t units_ = runtime::StageBudget::kAll;
+  std::uint32_t units_most_ = 0;
+};
+
+}  // namespace cgsr::app

@@ -1,0 +1,105 @@
+#include <csignal>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+#include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "platform/cpu_pin.h"
+#include "platform/log.h"
+#include "platform/memory.h"
+#include "platform/stop.h"
+#include "src/boot/robot.h"
+#include "src/commands/command.h"
+#include "src/commands/option_checks.h"
+#include "src/config/load.h"
+#include "src/output/text_file.h"
+
+namespace cgsr::app {
+namespace {
+
+struct Options {
+  std::string config = "config/robots/video.toml";
+  std::string input;
+  std::string model;
+  std::string json;
+  std::string log_level = "info";
+  int seed = -1;
+  boot::RunOptions run;
+};
+
+std::string ended_by(const boot::Robot& robot) {
+  if (const int signal = StopOnSignals::received(); signal != 0) return fmt::format("SIG{}", sigabbrev_np(signal));
+  if (robot.state().links.images_ended.load()) return "the last image";
+  return "the duration";
+}
+
+Result<void> apply(const Options& options, config::Robot& config) {
+  if (!options.input.empty()) config.camera.replay.path = options.input;
+  if (!options.model.empty()) config.run.model = options.model;
+  if (options.seed >= 0) config.sim.seed = options.seed;
+  if (config.task.kind != config::TaskKind::kRoute && config.run.model.empty() && config.run.learn.empty()) {
+    return fail(
+        fmt::format("{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a "
+                    "model, or run.learn "
+                    "names a region of the first image)",
+                    options.config));
+  }
+  return {};
+}
+
+int run_robot(const Options& options) {
+  // Before the first thread, and before anything that takes time: a signal at any moment ends the program in order.
+  StopRequest stop;
+  const StopOnSignals signals(stop);
+  keep_heap_pages();
+  cv::setNumThreads(1);
+  if (auto log = set_up_log(options.log_level); !log) return report(log.error());
+
+  auto config = config::load_robot(options.config);
+  if (!config) return report(config.error());
+  if (auto applied = apply(options, *config); !applied) return report(applied.error());
+  auto robot = boot::Robot::build(*config, options.run);
+  if (!robot) return report(robot.error());
+  const boot::RobotState& state = (*robot)->state();
+  for (const std::string& note : state.report.notes) spdlog::info("{}", note);
+  for (const std::string& problem : state.report.problems) spdlog::error("{}", problem);
+  spdlog::info("schedule:\n{}", runtime::to_text(state.vision.runner->schedule()));
+
+  if (auto done = (*robot)->run(stop); !done) return report(done.error());
+  const sinks::Summary summary = (*robot)->summary(ended_by(**robot));
+  fmt::print("{}", summary.text);
+  if (!options.json.empty()) {
+    if (auto written = write_file(options.json, summary.json.dump(1) + "\n"); !written) return report(written.error());
+  }
+  return state.outputs.sinks.problem().empty() ? kSuccess : kFailure;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("run", "run the robot in the foreground, from camera to wheels");
+  command->add_option("--config", options->config, "the robot's file")->capture_default_str();
+  command->add_option("--input", options->input, "images to replay instead of those that the file names");
+  command->add_option("--model", options->model, "object to follow instead of the one that the file names");
+  command->add_option("--seed", options->seed, "of the simulation instead of the one that the file names")
+      ->check(whole_number());
+  command->add_option("--duration", options->run.duration_s, "end after that many seconds")->check(in_range(1e-3, 1e6));
+  command->add_flag("--dry-run", options->run.dry_run, "compute and record, command nothing");
+  command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
+  command->add_option("--csv", options->run.csv, "write a row per image");
+  command->add_option("--video", options->run.video, "write a video of what the robot saw and did");
+  command->add_option("--trace", options->run.trace, "write a trace of stages and control cycles (ui.perfetto.dev)");
+  command->add_option("--recording", options->run.recording,
+                      "write a recording in MCAP (Foxglove): outputs and images");
+  command->add_option("--json", options->json, "write the summary for machines");
+  command->add_option("--log-level", options->log_level, "trace, debug, info, warning, error or off")
+      ->capture_default_str();
+  command->callback([options, &exit_code] { exit_code = run_robot(*options); });
+}
+
+}  // namespace cgsr::app

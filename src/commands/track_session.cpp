@@ -1,0 +1,88 @@
+#include "src/commands/track_session.h"
+
+#include <tuple>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "pipeline/color/learn/learn.h"
+#include "pipeline/color/learn/model_file.h"
+#include "src/config/load.h"
+
+namespace cgsr::app {
+namespace {
+
+Result<config::Color> configuration_of(const TrackOptions& options) {
+  auto config = config::load_color(options.config);
+  if (config && options.mode == "plain") config->track.mode = color::TrackMode::kPlain;
+  if (config && options.mode == "full") config->track.mode = color::TrackMode::kFull;
+  return config;
+}
+
+Result<ImageInput> open_input(const TrackOptions& options) {
+  InputOptions input{options.input, options.model.empty() ? options.learn_frame : 0, 0, 0, 0};
+  if (!options.scale_to.empty()) {
+    const auto size = parse_size(options.scale_to);
+    if (!size) return tl::unexpected(size.error());
+    std::tie(input.width_px, input.height_px) = *size;
+  }
+  return ImageInput::open(input);
+}
+
+Result<void> open_csv(const std::string& path, Session& session) {
+  auto csv = TextFile::create(path);
+  if (!csv) return tl::unexpected(csv.error());
+  session.csv.emplace(std::move(*csv));
+  return session.csv->add_line("frame,found,x,y,width,height,divergence,light_r,light_g,light_b");
+}
+
+Result<void> open_video(const std::string& path, Session& session) {
+  const auto& mode = session.input->mode();
+  session.overlay.emplace(mode.width_px, mode.height_px);
+  auto video = VideoWriter::create(path, session.overlay->picture_size(), 1.0 / to_seconds(mode.frame_period));
+  if (!video) return tl::unexpected(video.error());
+  session.video.emplace(std::move(*video));
+  return {};
+}
+
+}  // namespace
+
+Result<Session> open_session(const TrackOptions& options) {
+  Session session;
+  auto config = configuration_of(options);
+  if (!config) return tl::unexpected(config.error());
+  session.config = *config;
+  auto input = open_input(options);
+  if (!input) return tl::unexpected(input.error());
+  session.input.emplace(std::move(*input));
+  if (!options.truth.empty()) {
+    auto truth = read_truth(options.truth);
+    if (!truth) return tl::unexpected(truth.error());
+    session.truth = std::move(*truth);
+  }
+  if (!options.csv.empty()) {
+    if (auto opened = open_csv(options.csv, session); !opened) return tl::unexpected(opened.error());
+  }
+  if (!options.video.empty()) {
+    if (auto opened = open_video(options.video, session); !opened) return tl::unexpected(opened.error());
+  }
+  return session;
+}
+
+Result<Begun> learn_or_load(const TrackOptions& options, Session& session) {
+  if (!options.model.empty()) {
+    auto model = color::load_model(options.model);
+    if (!model) return tl::unexpected(model.error());
+    return Begun{std::move(*model), std::nullopt, {}, fmt::format("model {}", options.model)};
+  }
+  const auto box = parse_box(options.learn);
+  if (!box) return tl::unexpected(box.error());
+  auto next = session.input->next();
+  if (!next.image) return fail(fmt::format("{}: no image {}: {}", options.input, options.learn_frame, next.problem));
+  const color::Sample sample{next.image.view(), *box};
+  auto learned = color::learn({&sample, 1}, session.config.learn);
+  if (!learned) return tl::unexpected(learned.error());
+  return Begun{std::move(learned->model), std::move(next.image), *box, learned->message};
+}
+
+}  // namespace cgsr::app
