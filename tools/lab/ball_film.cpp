@@ -10,6 +10,7 @@
 #include "platform/config/reader.h"
 #include "tools/lab/localization/place.h"
 #include "tools/lab/scenes/random.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -128,7 +129,7 @@ std::string_view to_string(BallScene scene) {
 }
 
 Result<std::unique_ptr<BallFilm>> BallFilm::make(std::uint64_t seed) {
-  const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "home.toml";
+  const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / "home.toml";
   auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   std::erase_if(spec->robot, [](const sim::RobotSpec& robot) { return !robot.has_board; });

@@ -11,6 +11,7 @@
 #include "hal/sim/render/truth_images.h"
 #include "platform/config/reader.h"
 #include "tools/lab/scenes/random.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -48,7 +49,7 @@ bool has_hue(const cv::Vec3b& hsv) {
 }  // namespace
 
 Result<std::unique_ptr<CorridorFilm>> CorridorFilm::make(std::uint64_t seed) {
-  const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "corridor.toml";
+  const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / "corridor.toml";
   auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   vary(*spec, seed);

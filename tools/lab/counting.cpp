@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/lab/child.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -18,7 +19,8 @@ Cost cost_of(const nlohmann::json& figures) {
 Result<Counted> count_program(const std::string& program, const std::vector<std::string>& arguments) {
   const auto scratch = scratch_json();
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  std::vector<std::string> words{CGSR_COUNT_TOOL, "--json", scratch.string(), "--", (folder / program).string()};
+  std::vector<std::string> words{source_path("tools/count"), "--json", scratch.string(), "--",
+                                 (folder / program).string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const auto result = run_for_json(words, scratch);
   if (!result) return tl::unexpected(result.error());

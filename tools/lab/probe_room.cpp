@@ -9,6 +9,7 @@
 #include "hal/sim/calibration/calibration_files.h"
 #include "pipeline/geometry/pose.h"
 #include "platform/config/reader.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -35,7 +36,7 @@ sim::CalibrationErrors copy_errors() {
 }  // namespace
 
 Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const ProbeRoomLight& light) {
-  const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / "home.toml";
+  const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / "home.toml";
   auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   std::erase_if(spec->robot, [](const sim::RobotSpec& robot) { return !robot.has_board; });

@@ -10,11 +10,12 @@
 #include "hal/sim/calibration/map_file.h"
 #include "pipeline/world/load.h"
 #include "platform/config/reader.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 
 Result<std::unique_ptr<Place>> Place::make(const std::string& world, const Change& change) {
-  const std::filesystem::path file = std::filesystem::path(CGSR_WORLDS) / (world + ".toml");
+  const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / (world + ".toml");
   auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
   spec->ball.clear();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "platform/work_budget.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kFalse_rad = 1.5 / kDeg;
 }  // namespace
 
 Result<config::Localization> shipped_localization(const std::string& name) {
-  return config::load_localization(std::filesystem::path(CGSR_LOCALIZATION) / (name + ".toml"));
+  return config::load_localization(std::filesystem::path(source_path("config/localization")) / (name + ".toml"));
 }
 
 Contender contender(std::string name, const config::Localization& shipped, localization::Method method) {

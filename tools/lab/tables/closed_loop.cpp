@@ -11,6 +11,7 @@
 
 #include "tools/lab/child.h"
 #include "tools/lab/experiment.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -70,7 +71,8 @@ void add_demand(const std::vector<nlohmann::json>& runs, const Demand& demand, s
 }  // namespace
 
 Result<Report> closed_loop(const Setting& setting) {
-  const std::string robot = setting.config_file.empty() ? CGSR_SIM_ROBOT : setting.config_file;
+  const std::string robot =
+      setting.config_file.empty() ? source_path("config/robots/sim-home.toml") : setting.config_file;
   const int count = setting.trials.value_or(kRuns);
   std::vector<nlohmann::json> runs;
   for (int i = 0; i < count; ++i) {

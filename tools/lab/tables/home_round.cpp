@@ -16,6 +16,7 @@
 #include "tools/lab/child.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/place.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -52,7 +53,8 @@ void add_figure(Report& report, const std::vector<nlohmann::json>& runs, const c
 }  // namespace
 
 Result<Report> home_round(const Setting& setting) {
-  const std::filesystem::path shipped = setting.config_file.empty() ? CGSR_ROUND_ROBOT : setting.config_file;
+  const std::filesystem::path shipped =
+      setting.config_file.empty() ? source_path("config/robots/sim-home-round.toml") : setting.config_file;
   const auto home = Place::make("home");
   if (!home) return tl::unexpected(home.error());
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-round-{}", getpid());

@@ -28,6 +28,7 @@
 #include "tools/lab/localization/canny_judge.h"
 #include "tools/lab/localization/trial.h"
 #include "tools/lab/localization/visp_edges.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -159,7 +160,7 @@ Result<std::vector<std::optional<geometry::Pose>>> follow_ours(const Sequence& s
   const auto result =
       run_for_json({program.string(), "localize", "--map", sequence.map.string(), "--camera",
                     (folder / "camera.yaml").string(), "--input", sequence.images.string(), "--pose",
-                    (folder / "pose.csv").string(), "--config", std::string(CGSR_LOCALIZATION) + "/free.toml", "--csv",
+                    (folder / "pose.csv").string(), "--config", source_path("config/localization/free.toml"), "--csv",
                     (folder / "answer.csv").string(), "--json", json.string()},
                    json);
   const auto answers = app::read_poses(folder / "answer.csv");

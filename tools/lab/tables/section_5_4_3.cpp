@@ -21,6 +21,7 @@
 #include "src/output/overlay.h"
 #include "tools/lab/ball_scoring.h"
 #include "tools/lab/experiment.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -197,7 +198,8 @@ void add_score(const std::string& row, const BallScore& score, std::optional<dou
 }  // namespace
 
 Result<Report> section_5_4_3(const Setting& setting) {
-  auto config = config::load_robot(setting.config_file.empty() ? std::string(CGSR_LAMP_ROBOT) : setting.config_file);
+  auto config = config::load_robot(setting.config_file.empty() ? source_path("config/robots/sim-home-lamp.toml")
+                                                               : setting.config_file);
   if (!config) return tl::unexpected(config.error());
   config->sim.seed = static_cast<int>(setting.seed);
   const int width_px = config->sim.width_px;

@@ -22,6 +22,7 @@
 #include "tools/lab/experiment.h"
 #include "tools/lab/image.h"
 #include "tools/lab/localization/trial.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -170,7 +171,7 @@ Result<Measured> follow_film(const Film42& film, const std::string& method, bool
   const auto path = [&](const char* name) { return (film.folder / name).string(); };
   const auto json = scratch_json();
   std::vector<std::string> words;
-  if (count) words = {CGSR_COUNT_TOOL, "--json", json.string(), "--"};
+  if (count) words = {source_path("tools/count"), "--json", json.string(), "--"};
   for (const std::string& word : {program.string(),          std::string("localize"),
                                   std::string("--map"),      path("map.cgsrmap"),
                                   std::string("--camera"),   path("camera.yaml"),
@@ -179,7 +180,7 @@ Result<Measured> follow_film(const Film42& film, const std::string& method, bool
                                   std::string("--odometry"), path("odometry.csv"),
                                   std::string("--mount"),    path("mount.csv"),
                                   std::string("--method"),   method,
-                                  std::string("--config"),   std::string(CGSR_LOCALIZATION "/floor.toml"),
+                                  std::string("--config"),   source_path("config/localization/floor.toml"),
                                   std::string("--csv"),      path("answer.csv")}) {
     words.push_back(word);
   }

@@ -16,6 +16,7 @@
 #include "tools/lab/experiment.h"
 #include "tools/lab/image.h"
 #include "tools/lab/probe_room.h"
+#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -102,9 +103,9 @@ Result<Counted> count_observation(ProbeRoom& room, const Setting& setting) {
         image_of_yuyv({photo.data, photo.data + photo.stride_bytes * photo.height_px}, photo.width_px, photo.height_px);
     cv::imwrite((folder / "img" / fmt::format("{:04}.png", i++)).string(), image.bgr);
   }
-  auto counted =
-      count_program("cgsr", {"light", "--config", CGSR_PROBES, "--camera", (folder / "camera.yaml").string(), "--mount",
-                             (folder / "robot.toml").string(), "--input", (folder / "img").string()});
+  auto counted = count_program("cgsr", {"light", "--config", source_path("config/illumination/lamp-robot.toml"),
+                                        "--camera", (folder / "camera.yaml").string(), "--mount",
+                                        (folder / "robot.toml").string(), "--input", (folder / "img").string()});
   std::filesystem::remove_all(folder);
   return counted;
 }
