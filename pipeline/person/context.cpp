@@ -1,0 +1,25 @@
+#include "pipeline/person/context.h"
+
+#include <algorithm>
+
+namespace cgsr::person {
+
+std::string_view to_string(Cue cue) {
+  switch (cue) {
+    case Cue::kColor:
+      return "color";
+    case Cue::kGrey:
+      return "grey";
+  }
+  return "";
+}
+
+double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters) {
+  const bool color = cue == Cue::kColor;
+  const auto kept = [](double share, double loss) { return 1.0 - std::clamp(share, 0.0, 1.0) * loss; };
+  return kept(context.dark, color ? parameters.dark_color : parameters.dark_grey) *
+         kept(context.saturated, color ? parameters.saturated_color : parameters.saturated_grey) *
+         kept(context.blurred, color ? parameters.blurred_color : parameters.blurred_grey);
+}
+
+}  // namespace cgsr::person

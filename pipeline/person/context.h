@@ -1,0 +1,44 @@
+#pragma once
+
+#include "pipeline/person/classifier.h"
+#include "platform/parameters.h"
+
+namespace cgsr::person {
+
+/// How an image was taken, as far as it decides which classifiers can be relied on. Shares of the pixels of the region that is classified, each in [0, 1].
+struct ImageContext {
+  double dark = 0.0;       ///< too dark for a hue: all channels under 0.08.
+  double saturated = 0.0;  ///< cut off at the top in a channel.
+  double blurred = 0.0;    ///< 0: edges are as sharp as the lens makes them; 1: no edge is left.
+};
+
+/// By how much a disturbed image lowers the confidence of a kind of classifier (future work of 8.3).
+struct ContextParameters {
+  double dark_color = 0.8;
+  double dark_grey = 0.4;
+  double saturated_color = 0.7;
+  double saturated_grey = 0.4;
+  double blurred_color = 0.1;
+  double blurred_grey = 0.8;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("dark_color", self.dark_color, {0.0, 1.0}, "",
+                 "The share of its confidence that a colour classifier loses in a dark region.");
+    visit.number("dark_grey", self.dark_grey, {0.0, 1.0}, "",
+                 "The share of its confidence that a grey classifier loses in a dark region.");
+    visit.number("saturated_color", self.saturated_color, {0.0, 1.0}, "",
+                 "The share of its confidence that a colour classifier loses in a saturated region.");
+    visit.number("saturated_grey", self.saturated_grey, {0.0, 1.0}, "",
+                 "The share of its confidence that a grey classifier loses in a saturated region.");
+    visit.number("blurred_color", self.blurred_color, {0.0, 1.0}, "",
+                 "The share of its confidence that a colour classifier loses in a blurred region.");
+    visit.number("blurred_grey", self.blurred_grey, {0.0, 1.0}, "",
+                 "The share of its confidence that a grey classifier loses in a blurred region.");
+  }
+};
+
+/// \return the factor in [0, 1] by which a classifier of this kind is to be believed less: the product of 1 - share * loss over the disturbances.
+double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters = {});
+
+}  // namespace cgsr::person
