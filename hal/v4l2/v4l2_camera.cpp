@@ -1,0 +1,479 @@
+#include "hal/v4l2/v4l2_camera.h"
+
+#include <linux/videodev2.h>
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "hal/v4l2/formats.h"
+
+namespace cgsr::hal::v4l2 {
+namespace {
+
+constexpr int kImagesUntilControlsAreChecked = 5;  // some cameras take an exposure only once they stream
+constexpr int kMaxRestartsInARow = 3;              // then the device is opened anew
+
+std::string words(int error) {
+  return std::generic_category().message(error);
+}
+
+std::uint32_t fourcc_of(StreamFormat format) {
+  return format == StreamFormat::kYuyv ? V4L2_PIX_FMT_YUYV : V4L2_PIX_FMT_MJPEG;
+}
+
+v4l2_buffer buffer_of(int index) {
+  v4l2_buffer buffer{};
+  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  buffer.memory = V4L2_MEMORY_MMAP;
+  buffer.index = static_cast<std::uint32_t>(index);
+  return buffer;
+}
+
+MonoTime to_time(const timeval& time) {
+  return MonoTime{std::chrono::seconds(time.tv_sec) + std::chrono::microseconds(time.tv_usec)};
+}
+
+std::string list_of(const std::vector<OfferedFormat>& formats) {
+  std::string text;
+  for (const auto& format : formats) {
+    text += fmt::format("{}{}:", text.empty() ? "" : "; ", fourcc_text(format.fourcc));
+    for (const auto& size : format.sizes) text += " " + to_string(size);
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+}  // namespace
+
+V4l2Camera::Buffers::~Buffers() {
+  for (const auto& mapping : mapped) device.unmap(mapping.at, mapping.bytes);
+}
+
+V4l2Camera::V4l2Camera(V4l2Parameters parameters, std::unique_ptr<VideoDevice> device, LocateCamera locate)
+    : parameters_(std::move(parameters)),
+      device_(std::move(device)),
+      locate_(std::move(locate)),
+      wishes_(wishes_of(parameters_)) {}
+
+V4l2Camera::~V4l2Camera() {
+  V4l2Camera::stop();
+  buffers_.reset();
+  retired_.clear();
+}
+
+std::string V4l2Camera::name() const {
+  return fmt::format("camera '{}'", parameters_.device);
+}
+
+// ---- opening ------------------------------------------------------------------------------------------------------------
+
+Result<CameraMode> V4l2Camera::start() {
+  const std::lock_guard lock(stream_mutex_);
+  if (running_) return fail(name() + " is started already");
+  if (parameters_.width_px % 2 != 0) return fail(fmt::format("{}: width_px = {} is odd", name(), parameters_.width_px));
+  counters_ = {};
+  notes_.clear();
+  stamps_noted_ = false;
+  next_sequence_ = 0;
+  restarts_in_a_row_ = 0;
+  remember({});
+  auto mode = open_device();
+  if (!mode) return mode;
+  mode_ = *mode;
+  running_ = true;
+  return mode;
+}
+
+Result<CameraMode> V4l2Camera::open_device() {
+  const auto path = locate_(parameters_.device);
+  if (!path) {
+    return fail(fmt::format("{} is not there: `cgsr devices` lists the cameras of this computer", name()));
+  }
+  auto mode = set_up(*path);
+  if (!mode) close_device();
+  return mode;
+}
+
+Result<CameraMode> V4l2Camera::set_up(const std::string& path) {
+  if (const int error = device_->open(path); error != 0) {
+    const char* hint = error == EACCES ? ": the user has to be in the group video" : "";
+    return fail(fmt::format("{} ({}): {}{}", name(), path, words(error), hint));
+  }
+  const auto facts = facts_of(*device_);
+  if (!facts) return fail(fmt::format("{} ({}): {}", name(), path, facts.error().message));
+  if (!facts->captures) {
+    return fail(
+        fmt::format("{}: {} ({}) does not deliver images by streaming; a camera often has a second node for "
+                    "metadata: `cgsr devices` lists those that do",
+                    name(), path, facts->card));
+  }
+  auto mode = set_format();
+  if (!mode) return mode;
+  const auto period = set_rate();
+  if (!period) return tl::unexpected(period.error());
+  mode->frame_period = *period;
+  for (auto& refused : apply_controls(*device_, wishes_)) notes_.push_back(fmt::format("{}: {}", name(), refused));
+  if (auto made = make_buffers(); !made) return tl::unexpected(made.error());
+  if (auto streams = stream_on(); !streams) return tl::unexpected(streams.error());
+  images_since_open_ = 0;
+  return mode;
+}
+
+Result<CameraMode> V4l2Camera::set_format() {
+  v4l2_format format{};
+  format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  format.fmt.pix.width = static_cast<std::uint32_t>(parameters_.width_px);
+  format.fmt.pix.height = static_cast<std::uint32_t>(parameters_.height_px);
+  format.fmt.pix.pixelformat = fourcc_of(parameters_.format);
+  format.fmt.pix.field = V4L2_FIELD_NONE;
+  if (const int error = device_->control(VIDIOC_S_FMT, &format); error != 0) {
+    return fail(fmt::format("{}: setting the format failed ({}){}", name(), words(error),
+                            error == EBUSY ? ": another program uses the camera" : ""));
+  }
+  const auto& got = format.fmt.pix;
+  if (got.pixelformat != fourcc_of(parameters_.format) || static_cast<int>(got.width) != parameters_.width_px ||
+      static_cast<int>(got.height) != parameters_.height_px) {
+    return fail(fmt::format("{}: {} {}x{} was requested, the camera gives {} {}x{}; it offers {}", name(),
+                            fourcc_text(fourcc_of(parameters_.format)), parameters_.width_px, parameters_.height_px,
+                            fourcc_text(got.pixelformat), got.width, got.height, list_of(offered_formats(*device_))));
+  }
+  const std::ptrdiff_t row = 2 * std::ptrdiff_t{parameters_.width_px};
+  stride_bytes_ = parameters_.format == StreamFormat::kYuyv ? std::max<std::ptrdiff_t>(row, got.bytesperline) : row;
+  image_bytes_ = static_cast<std::size_t>(stride_bytes_) * static_cast<std::size_t>(parameters_.height_px - 1) +
+                 static_cast<std::size_t>(row);
+  return CameraMode{.width_px = parameters_.width_px, .height_px = parameters_.height_px};
+}
+
+Result<Duration> V4l2Camera::set_rate() {
+  v4l2_streamparm parameters{};
+  parameters.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  auto& capture = parameters.parm.capture;
+  capture.timeperframe = {1000, static_cast<std::uint32_t>(std::lround(parameters_.rate_hz * 1000.0))};
+  const int error = device_->control(VIDIOC_S_PARM, &parameters);
+  const bool said = error == 0 && capture.timeperframe.numerator != 0 && capture.timeperframe.denominator != 0;
+  if (!said) {
+    notes_.push_back(fmt::format("{} does not say its rate: {} Hz is assumed", name(), parameters_.rate_hz));
+    return Duration{std::llround(1e9 / parameters_.rate_hz)};
+  }
+  const double period_s = static_cast<double>(capture.timeperframe.numerator) / capture.timeperframe.denominator;
+  if (!(period_s >= 0.001 && period_s <= 10.0)) {
+    return fail(fmt::format("{}: an impossible time per image, {} s", name(), period_s));
+  }
+  if (std::abs(period_s * parameters_.rate_hz - 1.0) > 0.01) {
+    notes_.push_back(
+        fmt::format("{}: {} Hz was requested, {:.3g} Hz took effect", name(), parameters_.rate_hz, 1.0 / period_s));
+  }
+  return Duration{std::llround(period_s * 1e9)};
+}
+
+Result<void> V4l2Camera::make_buffers() {
+  v4l2_requestbuffers request{};
+  request.count = static_cast<std::uint32_t>(parameters_.buffers);
+  request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  request.memory = V4L2_MEMORY_MMAP;
+  if (const int error = device_->control(VIDIOC_REQBUFS, &request); error != 0) {
+    return fail(fmt::format("{}: no buffers ({}){}", name(), words(error),
+                            error == EBUSY ? ": another program streams from it" : ""));
+  }
+  if (request.count < 2 || request.count > 32) {
+    return fail(
+        fmt::format("{}: {} buffers were requested, the driver gives {}", name(), parameters_.buffers, request.count));
+  }
+  buffers_ = std::make_unique<Buffers>(*device_);
+  for (int i = 0; i < static_cast<int>(request.count); ++i) {
+    v4l2_buffer buffer = buffer_of(i);
+    Mapping mapping;
+    int error = device_->control(VIDIOC_QUERYBUF, &buffer);
+    if (error == 0) error = device_->map(buffer.length, buffer.m.offset, mapping.at);
+    if (error != 0) return fail(fmt::format("{}: buffer {} cannot be mapped ({})", name(), i, words(error)));
+    mapping.bytes = buffer.length;
+    buffers_->mapped.push_back(mapping);
+    if (parameters_.format == StreamFormat::kYuyv && mapping.bytes < image_bytes_) {
+      return fail(fmt::format("{}: a buffer has {} bytes, an image {}", name(), mapping.bytes, image_bytes_));
+    }
+  }
+  if (parameters_.format == StreamFormat::kMjpeg) {
+    buffers_->decoded.assign(request.count, std::vector<std::uint8_t>(image_bytes_));
+    buffers_->free_decoded = static_cast<std::uint32_t>((std::uint64_t{1} << request.count) - 1);
+  }
+  return {};
+}
+
+Result<void> V4l2Camera::stream_on() {
+  queued_ = 0;
+  for (int i = 0; i < static_cast<int>(buffers_->mapped.size()); ++i) {
+    if (const int error = queue(i); error != 0) {
+      return fail(fmt::format("{}: buffer {} cannot be queued ({})", name(), i, words(error)));
+    }
+  }
+  v4l2_event_subscription changes{};
+  changes.type = V4L2_EVENT_SOURCE_CHANGE;
+  (void)device_->control(VIDIOC_SUBSCRIBE_EVENT, &changes);  // few cameras have it
+  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  if (const int error = device_->control(VIDIOC_STREAMON, &type); error != 0) {
+    return fail(fmt::format("{}: the stream does not start ({}){}", name(), words(error),
+                            error == ENOSPC ? ": the USB bus has no bandwidth left" : ""));
+  }
+  fresh_stream_ = true;
+  alive_at_ = device_->now();
+  return {};
+}
+
+void V4l2Camera::close_device() {
+  if (buffers_) {
+    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    (void)device_->control(VIDIOC_STREAMOFF, &type);
+  }
+  device_->close();
+  retire_buffers();
+}
+
+/// Memory that is on lease stays mapped until its leases have ended.
+void V4l2Camera::retire_buffers() {
+  if (buffers_) retired_.push_back(std::move(buffers_));
+  std::erase_if(retired_, [](const auto& old) { return !old->slots.any_on_lease(); });
+}
+
+void V4l2Camera::stop() {
+  running_ = false;
+  device_->wake();
+  const std::lock_guard lock(stream_mutex_);
+  close_device();
+}
+
+// ---- streaming ----------------------------------------------------------------------------------------------------------
+
+tl::expected<ImageLease, CaptureFailure> V4l2Camera::next_image(MonoTime give_up_at) {
+  const std::lock_guard lock(stream_mutex_);
+  return take_image(give_up_at);
+}
+
+tl::expected<ImageLease, CaptureFailure> V4l2Camera::take_image(MonoTime give_up_at) {
+  for (;;) {
+    if (!running_) return tl::unexpected(CaptureFailure::kDisconnected);
+    const MonoTime now = device_->now();
+    if (now >= give_up_at) return tl::unexpected(CaptureFailure::kTimeout);
+    if (!buffers_) {
+      look_for_it(give_up_at);
+      continue;
+    }
+    queue_returned();
+    if (auto answer = look(give_up_at)) return std::move(*answer);
+  }
+}
+
+/// One wait, and what came of it. \return nothing: look again.
+std::optional<tl::expected<ImageLease, CaptureFailure>> V4l2Camera::look(MonoTime give_up_at) {
+  const bool starved = queued_ == 0;
+  buffers_->slots.set_starving(starved);
+  if (starved) {
+    queue_returned();  // one may have come back just before
+    if (queued_ > 0) return std::nullopt;
+    const Waited met = device_->wait(give_up_at, false);
+    alive_at_ = device_->now();  // no wonder that no image comes
+    if (met.woken || alive_at_ < give_up_at) return std::nullopt;
+    remember(fmt::format("{}: all {} buffers are on lease: the reader is too slow", name(), buffers_->mapped.size()));
+    return tl::unexpected(CaptureFailure::kNoSlot);
+  }
+  const MonoTime stalls_at = alive_at_ + seconds(parameters_.stall_s);
+  const Waited met = device_->wait(std::min(give_up_at, stalls_at), true);
+  if (!running_) return std::nullopt;
+  if (met.event) {
+    v4l2_event event{};
+    if (device_->control(VIDIOC_DQEVENT, &event) == 0 && event.type == V4L2_EVENT_SOURCE_CHANGE) {
+      restart_stream("the driver reports a change of its source");
+      return std::nullopt;
+    }
+  }
+  if (!met.image && !met.error) {
+    if (device_->now() >= stalls_at) {
+      restart_stream(fmt::format("no image for {:.1f} s, the last was number {}", parameters_.stall_s,
+                                 next_sequence_ == 0 ? std::string("none") : std::to_string(next_sequence_ - 1)));
+    }
+    return std::nullopt;
+  }
+  Filled filled;
+  const int error = dequeue(filled);
+  if (error == EAGAIN && !met.error) return std::nullopt;
+  if (error == ENODEV || error == ENXIO || error == EBADF) {
+    lose(fmt::format("unplugged ({})", words(error)));
+  } else if (error != 0) {
+    restart_stream(fmt::format("an image could not be taken from the driver ({})", words(error)));
+  }
+  if (error != 0) return std::nullopt;
+  return deliver(filled);
+}
+
+int V4l2Camera::dequeue(Filled& filled) {
+  v4l2_buffer buffer = buffer_of(0);
+  if (const int error = device_->control(VIDIOC_DQBUF, &buffer); error != 0) return error;
+  if (buffer.index >= buffers_->mapped.size()) return EIO;
+  --queued_;
+  filled.index = static_cast<int>(buffer.index);
+  filled.sequence = buffer.sequence;
+  filled.bytes = std::min<std::size_t>(buffer.bytesused, buffers_->mapped[buffer.index].bytes);
+  filled.stamp = stamp_of(buffer.flags, to_time(buffer.timestamp));
+  filled.flagged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
+  return 0;
+}
+
+MonoTime V4l2Camera::stamp_of(std::uint32_t flags, MonoTime driver_stamp) {
+  const MonoTime now = device_->now();
+  const bool monotonic = (flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+  const bool of_exposure = (flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+  if (!stamps_noted_) {
+    stamps_noted_ = true;
+    if (!monotonic) {
+      remember(fmt::format("{}: the driver's stamps are not of the monotonic clock: the moment of reading is taken",
+                           name()));
+    }
+  }
+  MonoTime stamp = monotonic ? driver_stamp : now;
+  if (!monotonic || !of_exposure) stamp -= seconds(parameters_.end_of_frame_offset_s);
+  return std::max(std::min(stamp, now), last_stamp_);
+}
+
+/// \return the number of the image in this camera's own count, which goes on when the driver's begins anew.
+std::uint64_t V4l2Camera::count_sequence(std::uint32_t driver_sequence) {
+  const std::uint32_t step = driver_sequence - driver_sequence_;  // modulo 2^32
+  // A driver that does not count, or counts backwards, is taken to have lost nothing.
+  const bool counts = !fresh_stream_ && step >= 1 && step < 0x8000'0000U;
+  const std::uint64_t gap = counts ? step - 1 : 0;
+  fresh_stream_ = false;
+  driver_sequence_ = driver_sequence;
+  counters_.lost += gap;
+  const std::uint64_t sequence = next_sequence_ + gap;
+  next_sequence_ = sequence + 1;
+  return sequence;
+}
+
+tl::expected<ImageLease, CaptureFailure> V4l2Camera::deliver(const Filled& filled) {
+  const std::uint64_t sequence = count_sequence(filled.sequence);
+  alive_at_ = device_->now();
+  restarts_in_a_row_ = 0;
+  const bool yuyv = parameters_.format == StreamFormat::kYuyv;
+  if (filled.flagged || filled.bytes == 0 || (yuyv && filled.bytes < image_bytes_)) {
+    ++counters_.flagged;
+    remember(filled.flagged
+                 ? fmt::format("{}: image {} is flagged as damaged by the driver", name(), sequence)
+                 : fmt::format("{}: image {} has {} of {} bytes", name(), sequence, filled.bytes, image_bytes_));
+    (void)queue(filled.index);
+    return tl::unexpected(CaptureFailure::kCorrupt);
+  }
+  if (!yuyv) return decode(filled, sequence, filled.stamp);
+  last_stamp_ = filled.stamp;
+  ++counters_.images;
+  buffers_->slots.lend(filled.index);
+  const ImageView view{buffers_->mapped[static_cast<std::size_t>(filled.index)].at, mode_.width_px, mode_.height_px,
+                       stride_bytes_, PixelFormat::kYuyv};
+  ImageLease lease(buffers_->slots, filled.index, view, sequence, filled.stamp);
+  check_controls();
+  return lease;
+}
+
+tl::expected<ImageLease, CaptureFailure> V4l2Camera::decode(const Filled& filled, std::uint64_t sequence,
+                                                            MonoTime stamp) {
+  const auto& source = buffers_->mapped[static_cast<std::size_t>(filled.index)];
+  if (buffers_->free_decoded == 0) {
+    (void)queue(filled.index);
+    remember(
+        fmt::format("{}: image {} is lost: all {} buffers are on lease", name(), sequence, buffers_->decoded.size()));
+    return tl::unexpected(CaptureFailure::kNoSlot);
+  }
+  const int slot = std::countr_zero(buffers_->free_decoded);
+  std::uint8_t* pixels = buffers_->decoded[static_cast<std::size_t>(slot)].data();
+  const auto problem = jpeg_.decode({source.at, filled.bytes}, mode_.width_px, mode_.height_px, pixels);
+  (void)queue(filled.index);
+  if (!problem.empty()) {
+    ++counters_.flagged;
+    remember(fmt::format("{}: image {}: {}", name(), sequence, problem));
+    return tl::unexpected(CaptureFailure::kCorrupt);
+  }
+  buffers_->free_decoded &= ~(std::uint32_t{1} << slot);
+  last_stamp_ = stamp;
+  ++counters_.images;
+  buffers_->slots.lend(slot);
+  ImageLease lease(buffers_->slots, slot, {pixels, mode_.width_px, mode_.height_px, stride_bytes_, PixelFormat::kYuyv},
+                   sequence, stamp);
+  check_controls();
+  return lease;
+}
+
+int V4l2Camera::queue(int index) {
+  v4l2_buffer buffer = buffer_of(index);
+  const int error = device_->control(VIDIOC_QBUF, &buffer);
+  if (error == 0) ++queued_;
+  return error;
+}
+
+void V4l2Camera::queue_returned() {
+  for (std::uint32_t back = buffers_->slots.take_returned(); back != 0; back &= back - 1) {
+    const int slot = std::countr_zero(back);
+    if (parameters_.format == StreamFormat::kMjpeg) {
+      buffers_->free_decoded |= std::uint32_t{1} << slot;
+    } else {
+      (void)queue(slot);  // a device that is gone says so when the next image is taken
+    }
+  }
+}
+
+void V4l2Camera::check_controls() {
+  if (++images_since_open_ != kImagesUntilControlsAreChecked || all_stand(*device_, wishes_)) return;
+  std::string text;
+  for (const auto& refused : apply_controls(*device_, wishes_)) text += (text.empty() ? "" : "; ") + refused;
+  if (!text.empty()) remember(fmt::format("{}: {}", name(), text));
+}
+
+// ---- faults -------------------------------------------------------------------------------------------------------------
+
+void V4l2Camera::restart_stream(const std::string& why) {
+  ++counters_.restarts;
+  remember(fmt::format("{}: {}; the stream is started again", name(), why));
+  if (++restarts_in_a_row_ > kMaxRestartsInARow)
+    return lose("it does not deliver images, however often it is restarted");
+  // All buffers are needed, and some are on lease: new ones.
+  close_device();
+  if (auto mode = open_device(); !mode) lose(mode.error().message);
+}
+
+void V4l2Camera::lose(const std::string& why) {
+  close_device();
+  gone_since_ = device_->now();
+  look_at_ = gone_since_ + seconds(parameters_.reopen_wait_s);
+  restarts_in_a_row_ = 0;
+  remember(fmt::format("{}: {}; it is looked for every {} s", name(), why, parameters_.reopen_wait_s));
+}
+
+void V4l2Camera::look_for_it(MonoTime give_up_at) {
+  if (device_->now() < look_at_) {
+    (void)device_->wait(std::min(give_up_at, look_at_), false);
+    return;
+  }
+  look_at_ = device_->now() + seconds(parameters_.reopen_wait_s);
+  auto mode = open_device();
+  if (mode && mode->frame_period == mode_.frame_period) {
+    ++counters_.returns;
+    remember(fmt::format("{}: back after {:.1f} s", name(), to_seconds(device_->now() - gone_since_)));
+    return;
+  }
+  if (mode) close_device();
+  remember(fmt::format("{}: gone for {:.1f} s ({})", name(), to_seconds(device_->now() - gone_since_),
+                       mode ? "it came back with another rate" : mode.error().message));
+}
+
+void V4l2Camera::remember(std::string problem) {
+  const std::lock_guard lock(problem_mutex_);
+  problem_ = std::move(problem);
+}
+
+std::string V4l2Camera::last_problem() const {
+  const std::lock_guard lock(problem_mutex_);
+  return problem_;
+}
+
+}  // namespace cgsr::hal::v4l2
