@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -69,6 +70,15 @@ std::vector<Kept> entries_of(const fs::path& folder) {
 }
 
 }  // namespace
+
+Result<ImageSource> image_source() {
+  const char* value = std::getenv("CGSR_SIM_IMAGES");
+  const std::string_view word = value == nullptr ? "" : value;
+  if (word.empty()) return ImageSource::kRobotFile;
+  if (word == "record") return ImageSource::kRecord;
+  if (word == "recorded") return ImageSource::kRecorded;
+  return fail(fmt::format("CGSR_SIM_IMAGES = '{}': expected 'record' or 'recorded', or no such variable", word));
+}
 
 fs::path image_cache_folder() {
   const char* xdg = std::getenv("XDG_CACHE_HOME");
@@ -175,7 +185,7 @@ Result<std::unique_ptr<CachedPhotographer>> CachedPhotographer::make(const Scene
 
 CachedPhotographer::CachedPhotographer(std::unique_ptr<Photographer> photographer, const CacheOptions& cache,
                                        std::string scene_key)
-    : photographer_(std::move(photographer)), cache_(cache), scene_key_(std::move(scene_key)) {}
+    : photographer_(std::move(photographer)), cache_(cache), scene_key_(std::move(scene_key)), draws_(cache.draws) {}
 
 double CachedPhotographer::take(const std::vector<Moment>& moments, const SensorSettings& settings,
                                 const ImageIdentity& identity, const YuyvBuffer& buffer) {
@@ -189,6 +199,12 @@ double CachedPhotographer::take(const std::vector<Moment>& moments, const Sensor
   sum.number(identity.number);
   const std::string key = sum.hex();
   if (const auto luma = cache_.find(key, buffer)) return *luma;
+  if (!draws_) {
+    throw std::runtime_error(
+        fmt::format("image {} of the simulated run is not in the cache {} and must not be rendered now: run the same "
+                    "command with CGSR_SIM_IMAGES=record first (tools/count does)",
+                    identity.number, image_cache_folder().string()));
+  }
   const double luma = photographer_->take(moments, settings, identity, buffer);
   cache_.keep(key, luma, buffer);
   return luma;

@@ -15,7 +15,17 @@ namespace cgsr::sim {
 struct CacheOptions {
   std::filesystem::path folder;                ///< empty: nothing is kept.
   std::uintmax_t most_bytes = 2'000'000'000U;  ///< of all images together; the ones used longest ago go first.
+  bool draws = true;                           ///< false: an image that is not kept is an error, it is not drawn.
 };
+
+/// What the environment variable CGSR_SIM_IMAGES says of the images of a simulated run; tools/count sets it.
+enum class ImageSource : std::uint8_t {
+  kRobotFile,  ///< unset: drawn, and kept where the robot's file says so.
+  kRecord,     ///< "record": drawn and kept.
+  kRecorded,   ///< "recorded": read; an image that was not kept ends the run with an error.
+};
+/// \return an error that names the words that it may have.
+Result<ImageSource> image_source();
 
 /// `cgsr/images` in the user's cache folder: $XDG_CACHE_HOME where that is an absolute path, else ~/.cache. Empty when neither is known.
 std::filesystem::path image_cache_folder();
@@ -69,6 +79,7 @@ class CachedPhotographer {
                                                           const RenderOptions& options, const CacheOptions& cache);
 
   /// As Photographer::take().
+  /// \throws std::runtime_error when the image is not kept and may not be drawn (CacheOptions::draws).
   double take(const std::vector<Moment>& moments, const SensorSettings& settings, const ImageIdentity& identity,
               const YuyvBuffer& buffer);
 
@@ -81,6 +92,7 @@ class CachedPhotographer {
   std::unique_ptr<Photographer> photographer_;
   ImageCache cache_;
   std::string scene_key_;  // of program, scene, lens and edge samples; empty: nothing is kept
+  bool draws_;
 };
 
 }  // namespace cgsr::sim

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 namespace cgsr::sim {
@@ -88,6 +90,22 @@ std::string identity_of(const dl_phdr_info& object) {
   return file + std::to_string(bytes) + std::to_string(changed);
 }
 
+bool holds(const dl_phdr_info& object, std::uintptr_t address) {
+  for (int i = 0; i < object.dlpi_phnum; ++i) {
+    const auto& header = object.dlpi_phdr[i];
+    const std::uintptr_t begin = object.dlpi_addr + header.p_vaddr;
+    if (header.p_type == PT_LOAD && address >= begin && address - begin < header.p_memsz) return true;
+  }
+  return false;
+}
+
+// The program that loaded the simulator as a plug-in draws nothing, nor does what the kernel or valgrind adds to a process.
+bool may_draw(const dl_phdr_info& object) {
+  const std::string_view name = object.dlpi_name == nullptr ? "" : object.dlpi_name;
+  if (name.empty()) return holds(object, reinterpret_cast<std::uintptr_t>(&program_fingerprint));
+  return name.find("linux-vdso") == std::string_view::npos && name.find("vgpreload_") == std::string_view::npos;
+}
+
 }  // namespace
 
 void Fingerprint::text(std::string_view text) {
@@ -158,7 +176,7 @@ std::string program_fingerprint() {
   std::vector<std::string> identities;
   dl_iterate_phdr(
       [](dl_phdr_info* object, std::size_t, void* into) {
-        static_cast<std::vector<std::string>*>(into)->push_back(identity_of(*object));
+        if (may_draw(*object)) static_cast<std::vector<std::string>*>(into)->push_back(identity_of(*object));
         return 0;
       },
       &identities);

@@ -53,8 +53,9 @@ void add(Fingerprint& sum, const CameraModel& camera);
 void add(Fingerprint& sum, const SensorSettings& settings);
 void add(Fingerprint& sum, const Moment& moment);
 
-/// The code that draws: the build identities of this program and of every library that it has loaded, in an order that does not depend on
-/// loading. Any change to any of them makes another one.
+/// The code that draws: the build identities of the simulator and of every library that the process has loaded, in an order that does not depend
+/// on loading. Any change to any of them makes another one. A program that loads the simulator as a plug-in takes no part: its other builds, and
+/// the same under valgrind, find the same images.
 std::string program_fingerprint();
 
 }  // namespace cgsr::sim

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -231,6 +232,29 @@ TEST_F(SimCache, StaysWithinItsSizeAndForgetsWhatWasUsedLongestAgo) {
   const int hits = cached->counts().hits;
   take(*cached, scene_, 1);
   EXPECT_EQ(cached->counts().hits, hits + 1) << "it was used meanwhile";
+}
+
+TEST_F(SimCache, AnImageThatIsNotKeptIsAnErrorWhereNothingMayBeDrawn) {
+  const auto drawing = photographer(options());
+  const Taken drawn = take(*drawing, scene_, 0);
+  CacheOptions reading = options();
+  reading.draws = false;
+  const auto recorded = photographer(reading);
+  EXPECT_TRUE(take(*recorded, scene_, 0) == drawn);
+  EXPECT_THROW(take(*recorded, scene_, 1), std::runtime_error);
+}
+
+TEST(SimImageSource, IsNamedByTheEnvironment) {
+  unsetenv("CGSR_SIM_IMAGES");
+  EXPECT_EQ(image_source(), ImageSource::kRobotFile);
+  setenv("CGSR_SIM_IMAGES", "record", 1);
+  EXPECT_EQ(image_source(), ImageSource::kRecord);
+  setenv("CGSR_SIM_IMAGES", "recorded", 1);
+  EXPECT_EQ(image_source(), ImageSource::kRecorded);
+  setenv("CGSR_SIM_IMAGES", "drawn", 1);
+  ASSERT_FALSE(image_source());
+  EXPECT_NE(image_source().error().message.find("expected 'record' or 'recorded'"), std::string::npos);
+  unsetenv("CGSR_SIM_IMAGES");
 }
 
 TEST(SimCacheFolder, IsWhereXdgSays) {

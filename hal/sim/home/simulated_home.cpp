@@ -169,8 +169,11 @@ Result<void> SimulatedHome::open_camera() {
   sensor_.noise = spec.noise;
   const double longest_s = spec.automatic_exposure ? AutoExposure{}.longest_exposure_s : 0.0;
   image_delay_ = seconds(std::max(sensor_.exposure_s, longest_s));
+  const auto source = image_source();
+  if (!source) return tl::unexpected(source.error());
   CacheOptions cache;
-  if (parameters_.cache) cache.folder = image_cache_folder();
+  if (parameters_.cache || *source != ImageSource::kRobotFile) cache.folder = image_cache_folder();
+  cache.draws = *source != ImageSource::kRecorded;
   auto photographer = CachedPhotographer::make(world_.scene, camera_, {parameters_.threads, spec.edge_samples}, cache);
   if (!photographer) return tl::unexpected(photographer.error());
   photographer_ = std::move(*photographer);

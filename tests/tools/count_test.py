@@ -1,0 +1,63 @@
+"""tools/count on a made-up program and a made-up valgrind: what is run, in which order and with which images, and what is summed."""
+import json
+import pathlib
+import subprocess
+import tempfile
+import textwrap
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Answers `config show` with its camera, and notes how else it was called.
+PROGRAM = """\
+    #!/bin/sh
+    if [ "$1" = config ]; then echo '[camera]'; echo "source = \\"$CAMERA\\"  # robot.toml:3"; exit 0; fi
+    echo "plain $CGSR_SIM_IMAGES: $*" >> "$NOTES"
+    exit "${PLAIN_EXIT:-0}"
+    """
+# Notes the call, and writes two images of one stage: three and one million instructions.
+VALGRIND = """\
+    #!/bin/sh
+    echo "counted $CGSR_SIM_IMAGES" >> "$NOTES"
+    for word in "$@"; do case "$word" in --callgrind-out-file=*) out="${word#*=}" ;; esac; done
+    printf 'desc: Trigger: Client Request: cgsr 0 track\\ntotals: 3000000\\n' > "$out"
+    printf 'desc: Trigger: Client Request: cgsr 1 track\\ntotals: 1000000\\n' >> "$out"
+    """
+
+
+class Count(unittest.TestCase):
+    def count(self, arguments, camera, plain_exit=0):
+        """The finished run of tools/count, and the notes of what it ran."""
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            for name, text in {"program": PROGRAM, "valgrind": VALGRIND}.items():
+                (folder / name).write_text(textwrap.dedent(text))
+                (folder / name).chmod(0o755)
+            environment = {"PATH": f"{folder}:/usr/bin:/bin", "NOTES": str(folder / "notes"), "CAMERA": camera,
+                           "PLAIN_EXIT": str(plain_exit)}
+            run = subprocess.run([ROOT / "tools/count", "--json", folder / "json", "--", folder / "program", *arguments],
+                                 env=environment, capture_output=True, text=True)
+            notes = folder / "notes"
+            result = json.loads((folder / "json").read_text()) if run.returncode == 0 else None
+            return run, notes.read_text().splitlines() if notes.exists() else [], result
+
+    def test_a_simulated_run_is_recorded_first_and_counted_on_its_recording(self):
+        run, notes, result = self.count(["run", "--config", "robot.toml", "--duration", "1"], "sim")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(notes, ["plain record: run --config robot.toml --duration 1", "counted recorded"])
+        self.assertEqual(result["stages"]["track"], {"mean_minstr": 2.0, "worst_minstr": 3.0, "images": 2})
+
+    def test_other_commands_are_counted_at_once(self):
+        for arguments, camera in ((["run", "--config", "robot.toml"], "replay"), (["track", "--config", "robot.toml"], "sim")):
+            run, notes, _ = self.count(arguments, camera)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertEqual(notes, ["counted "])
+
+    def test_nothing_is_counted_when_the_recording_fails(self):
+        run, notes, _ = self.count(["run", "--config", "robot.toml"], "sim", plain_exit=3)
+        self.assertNotEqual(run.returncode, 0)
+        self.assertIn("ended with exit code 3 while its images were recorded", run.stderr)
+        self.assertEqual(len(notes), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
