@@ -92,8 +92,10 @@ void Reader::State::complain_of_unknown_keys() {
     if (tables[layer] == nullptr) continue;
     for (const auto& [key, node] : *tables[layer]) {
       if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-      const std::string_view now = renamed(key.str(), known);
-      const std::string advice = now.empty() ? hint(key.str(), known) : fmt::format("; it is called {} now", now);
+      const auto now = renamed(key.str(), known);
+      const std::string advice =
+          now ? fmt::format("; it is called {} now{}{}", now->name, now->remark.empty() ? "" : "; ", now->remark)
+              : hint(key.str(), known);
       complain({layer, &node}, fmt::format("{}{} is unknown{}", prefix, printable(key.str()), advice));
     }
   }

@@ -9,6 +9,7 @@ namespace {
 struct Renaming {
   std::string_view before;
   std::string_view now;
+  std::string_view remark = {};
 };
 
 // Sorted by the earlier name. One name may have become two, each in its own section.
@@ -22,6 +23,7 @@ constexpr std::array kRenamings{
     Renaming{"backward_limit_mps", "max_backward_mps"},
     Renaming{"clearance_m", "min_clearance_m"},
     Renaming{"deceleration_limit_mps2", "max_deceleration_mps2"},
+    Renaming{"drive", "base.kinematic"},
     Renaming{"edges_most", "max_edges"},
     Renaming{"evidence_least", "min_evidence"},
     Renaming{"explained_tracking", "min_tracking_matched_ratio"},
@@ -76,6 +78,7 @@ constexpr std::array kRenamings{
     Renaming{"prior_chi2_most", "max_prior_chi2"},
     Renaming{"probes_lost_s", "max_probes_loss_s"},
     Renaming{"refusals_to_give_up", "max_refusals"},
+    Renaming{"rmp", "base.rmp"},
     Renaming{"rms_most_px", "max_rms_px"},
     Renaming{"search_for_s", "max_search_s"},
     Renaming{"sets_to_be_ready", "min_ready_sets"},
@@ -84,6 +87,7 @@ constexpr std::array kRenamings{
     Renaming{"sigma_most_deg", "max_sigma_deg"},
     Renaming{"sigma_most_m", "max_sigma_m"},
     Renaming{"size_limit", "max_size_ratio"},
+    Renaming{"source", "kind", "base.kind, base.can and switches.kind choose the other devices, each by itself"},
     Renaming{"stale_after_s", "max_box_age_s"},
     Renaming{"start_spacing_px", "hypothesis_spacing_px"},
     Renaming{"starts_most", "max_hypotheses"},
@@ -111,15 +115,18 @@ constexpr std::array kRenamings{
     Renaming{"y_min_m", "min_y_m"},
 };
 
+/// \return whether a section with the keys `known` has the key, which may lie in one of its sections.
+bool is_known(std::string_view key, const std::vector<std::string_view>& known) {
+  return std::find(known.begin(), known.end(), key.substr(0, key.find('.'))) != known.end();
+}
+
 }  // namespace
 
-std::string_view renamed(std::string_view key, const std::vector<std::string_view>& known) {
+std::optional<NewName> renamed(std::string_view key, const std::vector<std::string_view>& known) {
   for (const Renaming& renaming : kRenamings) {
-    if (renaming.before == key && std::find(known.begin(), known.end(), renaming.now) != known.end()) {
-      return renaming.now;
-    }
+    if (renaming.before == key && is_known(renaming.now, known)) return NewName{renaming.now, renaming.remark};
   }
-  return {};
+  return std::nullopt;
 }
 
 }  // namespace cgsr::config

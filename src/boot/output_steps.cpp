@@ -34,7 +34,7 @@ Result<void> open_outputs(RobotState& state) {
   outputs.statistics = &outputs.sinks.add(std::make_unique<sinks::StatisticsSink>(schedule));
   outputs.sinks.add(std::make_unique<sinks::DigestSink>());
   outputs.sinks.add(std::make_unique<sinks::LogSink>());
-  if (state.devices.simulation) {
+  if (state.setup.config.simulated_camera()) {
     outputs.truth = &outputs.sinks.add(std::make_unique<sinks::TruthSink>(
         *state.devices.simulation, set_distance_m(state.setup.config), options.observer));
   }

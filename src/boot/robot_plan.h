@@ -11,9 +11,9 @@ void add_robot_steps(BootPlan& plan, RobotState& state);
 
 // The steps, by what they make. Each reads what the steps before it left in the state.
 Result<void> open_simulation(RobotState& state);
-Result<void> open_camera(RobotState& state);
-Result<void> open_base(RobotState& state);
-Result<void> open_switches(RobotState& state);
+Result<void> start_camera(RobotState& state);
+Result<void> start_base(RobotState& state);
+Result<void> start_switches(RobotState& state);
 Result<void> load_model(RobotState& state);
 Result<void> load_map(RobotState& state);
 Result<void> read_calibration(RobotState& state);

@@ -3,9 +3,6 @@
 #include <array>
 #include <string>
 
-#include "hal/dummy/kinematic_drive.h"
-#include "hal/replay/replay_camera.h"
-#include "hal/rmp/parameters.h"
 #include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
 #include "pipeline/color/ball/integrated_tracker.h"
@@ -15,6 +12,7 @@
 #include "pipeline/vision_loop.h"
 #include "platform/config/provenance.h"
 #include "src/config/color.h"
+#include "src/config/devices.h"
 #include "src/config/light.h"
 #include "src/config/whereabouts.h"
 
@@ -27,10 +25,6 @@ enum class Pace : std::uint8_t {
 };
 inline constexpr std::array kPaceNames{Named<Pace>{"lock_step", Pace::kLockStep},
                                        Named<Pace>{"real_time", Pace::kRealTime}, Named<Pace>{"live", Pace::kLive}};
-
-enum class CameraSource : std::uint8_t { kReplay, kSim };
-inline constexpr std::array kCameraSourceNames{Named<CameraSource>{"replay", CameraSource::kReplay},
-                                               Named<CameraSource>{"sim", CameraSource::kSim}};
 
 /// Where in the first image the object is that shall be followed. No width: it is not learned so.
 struct LearnRegion {
@@ -70,76 +64,13 @@ struct Run {
   }
 };
 
-/// The pinhole of the camera that the images come from (frames: docs/frames.md), where no calibration says more.
-struct Pinhole {
-  double fx_px = 601.8;
-  double fy_px = 579.4;
-  double cx_px = 319.5;
-  double cy_px = 239.5;
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit.number("fx_px", self.fx_px, {10.0, 20000.0}, "px", "The focal length along x.");
-    visit.number("fy_px", self.fy_px, {10.0, 20000.0}, "px", "The focal length along y.");
-    visit.number("cx_px", self.cx_px, {-10000.0, 20000.0}, "px", "The column of the optical axis.");
-    visit.number("cy_px", self.cy_px, {-10000.0, 20000.0}, "px", "The row of the optical axis.");
-  }
-};
-
-struct Camera {
-  CameraSource source = CameraSource::kReplay;
-  Pinhole pinhole;
-  hal::ReplayParameters replay;
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit.choice("source", self.source, kCameraSourceNames,
-                 "Choose replay for files; sim is the simulated home, together with the base on its virtual CAN bus "
-                 "and its lines.");
-    visit.section("pinhole", self.pinhole, "The optics of the camera's images");
-    visit.section("replay", self.replay, "Video files and image folders as a camera");
-  }
-};
-
-struct Switches {
-  std::string arming_line;
-  std::string probe_lamp_line;
-  std::string room_lamp_line;
-  std::string fill_light_line;
-  double answer_timeout_s = 0.5;
-  illumination::ProbeLampParameters probe_lamp;
-
-  template <class Self, class Visitor>
-  static void describe(Self& self, Visitor& visit) {
-    visit.text("arming_line", self.arming_line,
-               "The input line whose rising edge arms the robot and whose falling edge disarms it; empty means none.");
-    visit.text("probe_lamp_line", self.probe_lamp_line,
-               "The output line that switches the lamp on the probe board, whose shadows check board and probes before "
-               "they are used; empty means none.");
-    visit.text("room_lamp_line", self.room_lamp_line,
-               "The output line that switches the room's lamp, possibly beside a wall switch; the shadow that changes "
-               "with it is the lamp's; empty means none.");
-    visit.text("fill_light_line", self.fill_light_line,
-               "The output line that switches a light on faces; empty means none.");
-    visit.number("answer_timeout_s", self.answer_timeout_s, {0.06, 10.0}, "s",
-                 "A line that has not acknowledged after this time counts as failed.");
-    visit.section("probe_lamp", self.probe_lamp, "The lamp on the probe board");
-  }
-
-  /// By LampLine.
-  [[nodiscard]] std::array<std::string, stages::kLampLines> lamps() const {
-    return {probe_lamp_line, room_lamp_line, fill_light_line};
-  }
-};
-
 /// Everything a robot's file says (config/robots/*.toml). Each section's struct lives with the code that it steers.
 struct Robot {
   Run run;
   Camera camera;
-  hal::SimulationParameters sim;
-  hal::KinematicDriveParameters drive;
-  hal::rmp::RmpParameters rmp;
+  Base base;
   Switches switches;
+  hal::SimulationParameters sim;
   VisionStages stage;
   Color color;
   RobotLocalization localization;
@@ -158,10 +89,9 @@ struct Robot {
   static void describe(Self& self, Visitor& visit) {
     visit.section("run", self.run, "How the program runs");
     visit.section("camera", self.camera, "The source of the images");
-    visit.section("sim", self.sim, "The simulated home (camera.source = \"sim\")");
-    visit.section("drive", self.drive, "The base that is used with replayed images: an ideal unicycle");
-    visit.section("rmp", self.rmp, "The Segway on a CAN bus: the base of the simulated home");
+    visit.section("base", self.base, "The base that carries the camera");
     visit.section("switches", self.switches, "Named input and output lines");
+    visit.section("sim", self.sim, "The simulated home, where the kind of camera, CAN bus or switches is \"sim\"");
     visit.section("stage", self.stage, "The schedule: the frames in which each stage runs and what it may cost");
     visit.section("color", self.color, "Colour tracking (chapter 3)");
     visit.section("localization", self.localization, "Localization (chapter 4)");
@@ -181,6 +111,12 @@ struct Robot {
     visit.section("motion", self.motion, "The limits of wheel commands and the conditions for a stop");
   }
 
+  [[nodiscard]] bool simulated_camera() const { return camera.kind == CameraKind::kSim; }
+  [[nodiscard]] bool simulated_base() const { return base.kind == BaseKind::kRmp && base.can == CanKind::kSim; }
+  [[nodiscard]] bool simulated_switches() const { return switches.kind == SwitchesKind::kSim; }
+  /// Some device is part of the simulated home.
+  [[nodiscard]] bool simulated() const { return simulated_camera() || simulated_base() || simulated_switches(); }
+
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
@@ -199,9 +135,12 @@ struct Robot {
              "judged "
              "by the probes' shadows";
     }
-    if (camera.source == CameraSource::kSim) {
-      return live ? "run.pace = \"live\" does not go with camera.source = \"sim\": lock_step or real_time" : "";
+    if (live && simulated()) {
+      return "run.pace = \"live\" does not go with devices of the simulated home (camera.kind, base.can, switches.kind "
+             "= "
+             "\"sim\"): lock_step or real_time";
     }
+    if (camera.kind != CameraKind::kReplay) return "";
     const bool own_rate = camera.replay.pace == hal::ReplayPace::kOwnRate;
     if (live && !own_rate)
       return "run.pace = \"live\" needs camera.replay.pace = \"own_rate\": images must come in real time";

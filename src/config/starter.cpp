@@ -27,7 +27,7 @@ distance_m = 1.5        # the distance that the robot keeps from the object
 
 [motion]
 max_forward_mps = 0.3   # the base never drives faster
-armed_at_start = true   # only because a recording moves no wheels
+armed_at_start = true   # only because the base of a recording (base.kind = "kinematic", the default) has no wheels
 )";
 }
 

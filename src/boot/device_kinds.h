@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hal/camera.h"
+#include "hal/drive.h"
+#include "hal/simulation.h"
+#include "hal/switches.h"
+#include "platform/clock.h"
+#include "src/config/robot.h"
+
+namespace cgsr::boot {
+
+/// What a factory may use.
+struct DeviceContext {
+  const config::Robot& config;
+  hal::Simulation* simulation;  ///< null exactly when config.simulated() is false. Outlives the devices.
+  RealClock& clock;             ///< outlives the devices.
+};
+
+/// A camera that streams, and what there is to say of it.
+struct OpenCamera {
+  std::unique_ptr<hal::Camera> camera;
+  hal::CameraMode mode;
+  MonoTime first_due{};            ///< when the first image is there, in lock-step.
+  std::vector<std::string> notes;  ///< for the person who started the robot.
+};
+
+/// The camera of the kind camera.kind, started. \return what is wrong with the device or its files.
+Result<OpenCamera> open_camera(const DeviceContext& context);
+
+/// The base of the kind base.kind, not started. \return what is wrong with its bus.
+Result<std::unique_ptr<hal::Drive>> make_base(const DeviceContext& context);
+
+/// The lines of the kind switches.kind, not started.
+Result<std::unique_ptr<hal::Switches>> make_switches(const DeviceContext& context);
+
+}  // namespace cgsr::boot
