@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 #include <opencv2/calib3d.hpp>
 
+#include "pipeline/geometry/quantile.h"
+
 namespace cgsr::calibration {
 namespace {
 
@@ -18,12 +20,6 @@ std::vector<double> rms_per_view(const cv::Mat& errors) {
   out.reserve(errors.total());
   for (int i = 0; i < static_cast<int>(errors.total()); ++i) out.push_back(errors.at<double>(i));
   return out;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Solution {
@@ -105,8 +101,8 @@ double coverage_of(const std::vector<BoardView>& views, const cv::Size& size, st
     }
   }
   if (empty != nullptr) {
-    constexpr std::array<const char*, 4> kWords = {"upper left", "upper right", "lower left", "lower right"};
-    *empty = kWords[static_cast<std::size_t>(std::max_element(empty_of.begin(), empty_of.end()) - empty_of.begin())];
+    constexpr std::array<const char*, 4> kNames = {"upper left", "upper right", "lower left", "lower right"};
+    *empty = kNames[static_cast<std::size_t>(std::max_element(empty_of.begin(), empty_of.end()) - empty_of.begin())];
   }
   return static_cast<double>(filled) / (kColumns * kRows);
 }
@@ -134,7 +130,7 @@ Result<Intrinsics> calibrate_intrinsics(const std::vector<BoardView>& views, con
   try {
     solution = solve(taken, board, size, options.third_radial);
     result.view_rms_px = solution.view_rms;
-    const double limit = kOutlier * median_of(solution.view_rms);
+    const double limit = kOutlier * geometry::quantile(solution.view_rms, 0.5);
     taken.clear();
     for (std::size_t i = 0; i < views.size(); ++i) {
       result.used.push_back(solution.view_rms[i] <= limit);

@@ -14,11 +14,11 @@ namespace {
 
 using geometry::Pose;
 
-constexpr double kGreatestRms_px = 2.0;
-constexpr double kGreatestRms_m = 0.10;
-constexpr double kLeastTurn_rad = 0.52;
-constexpr double kLeastWay_m = 0.3;
-constexpr double kLeastFirmness_m = 0.02;
+constexpr double kMaxRms_px = 2.0;
+constexpr double kMaxRms_m = 0.10;
+constexpr double kMinTurn_rad = 0.52;
+constexpr double kMinWay_m = 0.3;
+constexpr double kMinFirmness_m = 0.02;
 constexpr std::size_t kFewestPairs = 6;
 /// A radian counts as so many metres: what is seen 2 m away moves by that.
 constexpr double kLever_m = 2.0;
@@ -129,7 +129,7 @@ Result<Mount> mount_from_boards(const std::vector<BoardView>& views, const std::
   }
   const auto residuals_of = [&](const Pose& X) { return corner_residuals(X, views, X_RB, board, camera); };
   Pose start = Pose::Identity();
-  double least = 0.0;
+  double min = 0.0;
   for (std::size_t i = 0; i < views.size(); ++i) {
     Pose X_RC = Pose::Identity();
     try {
@@ -138,8 +138,8 @@ Result<Mount> mount_from_boards(const std::vector<BoardView>& views, const std::
       return fail(fmt::format("image {}: the board has no pose: {}", views[i].image, wrong.err));
     }
     const double cost = residuals_of(X_RC).cwiseAbs().cwiseMin(100.0).sum();
-    if (i == 0 || cost < least) {
-      least = cost;
+    if (i == 0 || cost < min) {
+      min = cost;
       start = X_RC;
     }
   }
@@ -157,41 +157,37 @@ Result<Mount> mount_from_boards(const std::vector<BoardView>& views, const std::
     const auto part = fit.residuals.segment(static_cast<Eigen::Index>(i) * per_view, per_view);
     mount.view_rms.push_back(std::sqrt(2.0 * part.squaredNorm() / static_cast<double>(per_view)));
   }
-  if (!(mount.rms <= kGreatestRms_px)) {
+  if (!(mount.rms <= kMaxRms_px)) {
     const auto worst = static_cast<std::size_t>(std::max_element(mount.view_rms.begin(), mount.view_rms.end()) -
                                                 mount.view_rms.begin());
     return fail(fmt::format(
         "corners lie {:.1f} px (RMS) off; expected at most {:.0f}: the stated poses of the board contradict the "
         "images, most of all image {} ({:.1f} px)",
-        mount.rms, kGreatestRms_px, views[worst].image, mount.view_rms[worst]));
+        mount.rms, kMaxRms_px, views[worst].image, mount.view_rms[worst]));
   }
   return mount;
 }
 
-Result<Mount> mount_from_poses(const std::vector<Pose>& X_WC, const std::vector<Pose>& X_OR) {
-  if (X_WC.size() < kFewestPairs || X_WC.size() != X_OR.size()) {
-    return fail(fmt::format("{} camera poses and {} of the odometry; expected at least {} and as many of both",
-                            X_WC.size(), X_OR.size(), kFewestPairs));
-  }
+namespace {
+
+// A drive that neither turns nor moves leaves the mount open.
+Result<void> check_drive(const std::vector<Pose>& X_OR) {
   double turn = 0.0;
   double way = 0.0;
   for (const Pose& X : X_OR) {
     turn = std::max(turn, geometry::vector_of(X_OR[0].linear().transpose() * X.linear()).norm());
     way = std::max(way, (X.translation() - X_OR[0].translation()).norm());
   }
-  if (turn < kLeastTurn_rad || way < kLeastWay_m) {
+  if (turn < kMinTurn_rad || way < kMinWay_m) {
     return fail(fmt::format(
         "the robot turned by {:.0f} degrees and drove {:.2f} m; expected at least {:.0f} degrees and {} m: without, "
         "where the camera is and which way it looks cannot be told apart",
-        turn * 180.0 / 3.14159265, way, kLeastTurn_rad * 180.0 / 3.14159265, kLeastWay_m));
+        turn * 180.0 / 3.14159265, way, kMinTurn_rad * 180.0 / 3.14159265, kMinWay_m));
   }
-  const Start start = start_from_poses(X_WC, X_OR);
-  if (!(start.firmness_m >= kLeastFirmness_m)) {
-    return fail(fmt::format(
-        "the robot drove along one circle ({:.3f} m off; expected at least {}): drive bends to both sides and straight "
-        "pieces, otherwise where the camera is and which way it looks cannot be told apart",
-        start.firmness_m, kLeastFirmness_m));
-  }
+  return {};
+}
+
+Fit fit_mount(const std::vector<Pose>& X_WC, const std::vector<Pose>& X_OR, const Start& start) {
   const auto n = static_cast<Eigen::Index>(X_WC.size());
   const auto residuals_at = [&](const Eigen::VectorXd& v) {
     const Pose X_RC = stepped(start.X_RC, v, 0);
@@ -205,9 +201,10 @@ Result<Mount> mount_from_poses(const std::vector<Pose>& X_WC, const std::vector<
     }
     return out;
   };
-  const Fit fit = fit_least_squares(residuals_at, Eigen::VectorXd::Zero(9));
-  Mount mount;
-  mount.X_RC = geometry::normalized(stepped(start.X_RC, fit.parameters, 0));
+  return fit_least_squares(residuals_at, Eigen::VectorXd::Zero(9));
+}
+
+void fill_errors(const Fit& fit, Eigen::Index n, Mount& mount) {
   double squares_m = 0.0;
   double squares_rad = 0.0;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -223,11 +220,32 @@ Result<Mount> mount_from_poses(const std::vector<Pose>& X_WC, const std::vector<
   }
   mount.rms = std::sqrt(squares_m / static_cast<double>(n));
   mount.rms_rad = std::sqrt(squares_rad / static_cast<double>(n));
-  if (!(mount.rms <= kGreatestRms_m)) {
+}
+
+}  // namespace
+
+Result<Mount> mount_from_poses(const std::vector<Pose>& X_WC, const std::vector<Pose>& X_OR) {
+  if (X_WC.size() < kFewestPairs || X_WC.size() != X_OR.size()) {
+    return fail(fmt::format("{} camera poses and {} of the odometry; expected at least {} and as many of both",
+                            X_WC.size(), X_OR.size(), kFewestPairs));
+  }
+  if (auto checked = check_drive(X_OR); !checked) return tl::unexpected(checked.error());
+  const Start start = start_from_poses(X_WC, X_OR);
+  if (!(start.firmness_m >= kMinFirmness_m)) {
+    return fail(fmt::format(
+        "the robot drove along one circle ({:.3f} m off; expected at least {}): drive bends to both sides and straight "
+        "pieces, otherwise where the camera is and which way it looks cannot be told apart",
+        start.firmness_m, kMinFirmness_m));
+  }
+  const Fit fit = fit_mount(X_WC, X_OR, start);
+  Mount mount;
+  mount.X_RC = geometry::normalized(stepped(start.X_RC, fit.parameters, 0));
+  fill_errors(fit, static_cast<Eigen::Index>(X_WC.size()), mount);
+  if (!(mount.rms <= kMaxRms_m)) {
     return fail(fmt::format(
         "the poses lie {:.1f} cm (RMS) off the odometry; expected at most {:.0f}: take a shorter drive, or calibrate "
         "the odometry first",
-        100.0 * mount.rms, 100.0 * kGreatestRms_m));
+        100.0 * mount.rms, 100.0 * kMaxRms_m));
   }
   return mount;
 }

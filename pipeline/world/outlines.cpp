@@ -15,9 +15,8 @@ namespace {
 
 // Two surfaces that bend by less than this are flat, or folded onto each other.
 const double kCosFlat = std::cos(0.6 * 3.14159265358979 / 180.0);
-constexpr std::size_t kMostNear = 500;  // pieces of outlines, on average, whose box a corner may lie in.
-constexpr std::size_t kMostAtVertex =
-    64;  // edges at one corner that are looked at when straight lines are put together again.
+constexpr std::size_t kMaxNear = 500;     // pieces of outlines, on average, whose box a corner may lie in.
+constexpr std::size_t kMaxAtVertex = 64;  // edges at one corner that are compared when straight lines are joined again.
 
 /// A piece of a surface's outline, counter-clockwise: the surface lies to the left of from -> to.
 struct Piece {
@@ -69,54 +68,10 @@ class Tracer {
     }
   }
 
-  // Where the end of one piece touches the inside of another, that one is cut.
+  // Where the end of one piece touches the inside of another, that one is cut. \return false: it would take too long.
   bool cut() {
-    std::vector<std::uint32_t> ends;
-    std::vector<Bounds> boxes;
-    ends.reserve(2 * pieces_.size());
-    boxes.reserve(pieces_.size());
-    for (const Piece& piece : pieces_) {
-      ends.push_back(piece.from);
-      ends.push_back(piece.to);
-      Bounds box;
-      box.add(map_.vertices[piece.from]);
-      box.add(map_.vertices[piece.to]);
-      boxes.push_back(box);
-    }
-    std::sort(ends.begin(), ends.end());
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    const Tree tree(boxes, 8);
-
-    struct Notch {
-      std::uint32_t piece = 0;
-      double along_m = 0.0;
-      std::uint32_t vertex = 0;
-      bool operator<(const Notch& o) const {
-        return std::tie(piece, along_m, vertex) < std::tie(o.piece, o.along_m, o.vertex);
-      }
-    };
     std::vector<Notch> notches;
-    // Where everything lies among everything, this would take for ever.
-    const std::size_t most = kMostNear * ends.size() + 1'000'000;
-    std::size_t looked_at = 0;
-    for (const std::uint32_t v : ends) {
-      if (looked_at > most) return false;
-      Bounds box;
-      box.low = map_.vertices[v].array() - static_cast<float>(weld_m_);
-      box.high = map_.vertices[v].array() + static_cast<float>(weld_m_);
-      tree.touching(box, [&](std::uint32_t i) {
-        ++looked_at;
-        const Piece& piece = pieces_[i];
-        if (piece.from == v || piece.to == v) return;
-        const Eigen::Vector3d whole = point(piece.to) - point(piece.from);
-        const Eigen::Vector3d part = point(v) - point(piece.from);
-        const double length = whole.norm();
-        const double along = part.dot(whole) / length;
-        if (along <= weld_m_ || along >= length - weld_m_) return;
-        if ((part - whole * (along / length)).norm() > weld_m_) return;
-        notches.push_back({i, along, v});
-      });
-    }
+    if (!find_notches(notches)) return false;
     if (notches.empty()) return true;
     std::sort(notches.begin(), notches.end());
     std::vector<Piece> result;
@@ -133,6 +88,63 @@ class Tracer {
     }
     std::sort(result.begin(), result.end());
     pieces_.swap(result);
+    return true;
+  }
+
+  // A vertex at which a piece is to be cut.
+  struct Notch {
+    std::uint32_t piece = 0;
+    double along_m = 0.0;
+    std::uint32_t vertex = 0;
+    bool operator<(const Notch& o) const {
+      return std::tie(piece, along_m, vertex) < std::tie(o.piece, o.along_m, o.vertex);
+    }
+  };
+
+  [[nodiscard]] std::vector<std::uint32_t> ends_of_pieces() const {
+    std::vector<std::uint32_t> ends;
+    ends.reserve(2 * pieces_.size());
+    for (const Piece& piece : pieces_) {
+      ends.push_back(piece.from);
+      ends.push_back(piece.to);
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+  }
+
+  bool find_notches(std::vector<Notch>& notches) const {
+    std::vector<Bounds> boxes;
+    boxes.reserve(pieces_.size());
+    for (const Piece& piece : pieces_) {
+      Bounds box;
+      box.add(map_.vertices[piece.from]);
+      box.add(map_.vertices[piece.to]);
+      boxes.push_back(box);
+    }
+    const std::vector<std::uint32_t> ends = ends_of_pieces();
+    const Tree tree(boxes, 8);
+    // Where everything lies among everything, this would not end in useful time.
+    const std::size_t max_compared = kMaxNear * ends.size() + 1'000'000;
+    std::size_t compared = 0;
+    for (const std::uint32_t v : ends) {
+      if (compared > max_compared) return false;
+      Bounds box;
+      box.low = map_.vertices[v].array() - static_cast<float>(weld_m_);
+      box.high = map_.vertices[v].array() + static_cast<float>(weld_m_);
+      tree.touching(box, [&](std::uint32_t i) {
+        ++compared;
+        const Piece& piece = pieces_[i];
+        if (piece.from == v || piece.to == v) return;
+        const Eigen::Vector3d whole = point(piece.to) - point(piece.from);
+        const Eigen::Vector3d part = point(v) - point(piece.from);
+        const double length = whole.norm();
+        const double along = part.dot(whole) / length;
+        if (along <= weld_m_ || along >= length - weld_m_) return;
+        if ((part - whole * (along / length)).norm() > weld_m_) return;
+        notches.push_back({i, along, v});
+      });
+    }
     return true;
   }
 
@@ -170,7 +182,7 @@ class Tracer {
   void meet(std::vector<Piece>& here) {
     std::vector<Piece> passing;
     for (std::size_t a = 0; a < here.size(); ++a) {
-      for (std::size_t b = a + 1; b < here.size() && b < a + kMostAtVertex; ++b) {
+      for (std::size_t b = a + 1; b < here.size() && b < a + kMaxAtVertex; ++b) {
         const double bend = inwards(here[a]).dot(inwards(here[b]));
         const bool flat = bend < -kCosFlat;
         const bool alike = here[a].surface == here[b].surface || material(here[a]) == material(here[b]);
@@ -181,7 +193,7 @@ class Tracer {
           --a;
           break;
         }
-        if (bend > kCosFlat) {  // folded onto each other: one of them is seen
+        if (bend > kCosFlat) {  // folded onto each other: one of them is visible
           erase(here, b);
           --b;
         }
@@ -209,7 +221,7 @@ class Tracer {
     std::pair<Piece, Piece> best{here[0], here[1]};
     double best_score = -1.0;
     for (std::size_t a = 0; a < here.size() && here.size() > 2; ++a) {
-      for (std::size_t b = a + 1; b < std::min(here.size(), a + kMostAtVertex); ++b) {
+      for (std::size_t b = a + 1; b < std::min(here.size(), a + kMaxAtVertex); ++b) {
         const Eigen::Vector3d into_a = inwards(here[a]);
         const Eigen::Vector3d into_b = inwards(here[b]);
         const bool facing = into_a.dot(normal(here[b])) > 0.01 && into_b.dot(normal(here[a])) > 0.01;
@@ -242,7 +254,7 @@ class Tracer {
     for (std::uint32_t e = 0; e < count; ++e) {
       const Edge& edge = map_.edges[e];
       const std::uint32_t v = edge.vertices[1];
-      const std::size_t end = std::min<std::size_t>(first[v + 1], first[v] + kMostAtVertex);
+      const std::size_t end = std::min<std::size_t>(first[v + 1], first[v] + kMaxAtVertex);
       for (std::size_t i = first[v]; i < end; ++i) {
         const std::uint32_t other = begin_here[i];
         if (other == e || follows[other] || !carries_on(edge, map_.edges[other])) continue;

@@ -4,7 +4,6 @@
 
 #include "platform/clock.h"
 #include "platform/image_lease.h"
-#include "platform/mailbox.h"
 #include "platform/ring.h"
 #include "platform/service.h"
 #include "platform/stop.h"
@@ -29,7 +28,6 @@ TEST(HandOverAlloc, PrimitivesNeitherAllocateNorFault) {
   NoLender lender;
   const auto records = std::make_unique<Ring<Record, 256, Overflow::kDiscard>>();  // 1 MiB: fresh from the kernel
   const auto leases = std::make_unique<Ring<ImageLease, 4>>();
-  const auto goals = std::make_unique<Mailbox<Record>>();
   Heartbeats heartbeats;
   WakeUp wake_up;
   StopRequest stop;
@@ -41,8 +39,6 @@ TEST(HandOverAlloc, PrimitivesNeitherAllocateNorFault) {
     for (int i = 0; i < 8; ++i) static_cast<void>(leases->push(ImageLease(lender, i, {}, 0, {})));
     static_cast<void>(leases->pop_newest());
     records->push(Record{});
-    goals->put(Record{});
-    static_cast<void>(goals->latest());
     wake_up.wake();
     static_cast<void>(wake_up.wait_until(clock.now() + std::chrono::seconds(1)));
     heartbeats.beat(heartbeat, clock.now());

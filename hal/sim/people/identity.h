@@ -27,7 +27,7 @@ struct Identity {
   float hair_back_m = -0.055F;  ///< how far down the hair goes at the sides and behind.
   float beard = 0.0F;           ///< 0 .. 1.
   bool glasses = false;
-  Outfit outfit;  ///< the usual one.
+  Outfit outfit{};  ///< the usual one.
 };
 
 /// \param index  0 .. kIdentities - 1. Skin goes from light to dark with it.
