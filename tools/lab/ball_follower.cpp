@@ -7,6 +7,7 @@
 
 #include "pipeline/color/learn/learn.h"
 #include "platform/count_marks.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/film.h"
 
 namespace cgsr::lab {
@@ -31,7 +32,9 @@ Result<int> follow_ball(const std::string& folder, bool with_mask, double focal_
   const color::ShadeMaskView mask{cells.data, cells.cols, cells.rows, static_cast<std::ptrdiff_t>(cells.step)};
   auto first = film->image(0);
   if (!first) return tl::unexpected(first.error());
-  auto tracker = learned_ball(*first, film->truth.front().value_or(Box{}), configuration, {}, focal_px);
+  const auto robot = lamp_robot({});
+  if (!robot) return tl::unexpected(robot.error());
+  auto tracker = learned_ball(*first, film->truth.front().value_or(Box{}), configuration, robot->integrated, focal_px);
   if (!tracker) return tl::unexpected(tracker.error());
   UnlimitedBudget budget;
   int found = 0;

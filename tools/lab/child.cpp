@@ -56,4 +56,14 @@ Result<nlohmann::json> run_for_json(const std::vector<std::string>& words, const
   return result;
 }
 
+Result<std::string> run_for_text(const std::vector<std::string>& words) {
+  const auto log = scratch_json().replace_extension("txt");
+  const int code = run_logged(words, log);
+  const std::string printed = text_of(log);
+  std::error_code ignored;
+  std::filesystem::remove(log, ignored);
+  if (code != 0) return fail(fmt::format("{}: ended with exit code {}\n{}", fmt::join(words, " "), code, printed));
+  return printed;
+}
+
 }  // namespace cgsr::lab

@@ -19,4 +19,7 @@ std::filesystem::path scratch_json();
 /// \return what it wrote; or its exit code and all that it printed.
 Result<nlohmann::json> run_for_json(const std::vector<std::string>& words, const std::filesystem::path& json);
 
+/// Runs a program to its end. \return what it printed, both outputs; or its exit code and that.
+Result<std::string> run_for_text(const std::vector<std::string>& words);
+
 }  // namespace cgsr::lab

@@ -1,42 +1,247 @@
 #include "tools/lab/experiment.h"
 
+#include <algorithm>
 #include <array>
 
-#include "platform/config/canonical.h"
+#include "tools/lab/configurations.h"
+#include "tools/lab/source_path.h"
+#include "tools/lab/sources.h"
+#include "tools/lab/tables/requirements.h"
 
 namespace cgsr::lab {
+namespace {
 
-std::string Setting::config_sha256() const {
-  return config::hash(configuration);
+constexpr std::array<std::string_view, 4> kColorRooms{"pipeline/color", "pipeline/imaging", "tools/lab/scenes",
+                                                      "tools/lab/ours.cpp"};
+constexpr std::array<std::string_view, 8> kLocalizationRooms{
+    "pipeline/localization", "pipeline/render", "pipeline/world",      "pipeline/geometry",
+    "pipeline/imaging",      "hal/sim/render",  "hal/sim/calibration", "tools/lab/localization"};
+constexpr std::array<std::string_view, 6> kLampRooms{"pipeline/illumination", "pipeline/geometry",
+                                                     "pipeline/imaging",      "hal/sim/render",
+                                                     "hal/sim/calibration",   "tools/lab/probe_room.cpp"};
+constexpr std::array<std::string_view, 6> kShadeRooms{"pipeline/render",     "pipeline/world",
+                                                      "pipeline/geometry",   "hal/sim/render",
+                                                      "hal/sim/calibration", "tools/lab/localization"};
+constexpr std::array<std::string_view, 6> kBallRooms{"pipeline/color",  "pipeline/imaging",
+                                                     "pipeline/render", "pipeline/geometry",
+                                                     "hal/sim/render",  "tools/lab/ball_film.cpp"};
+constexpr std::array<std::string_view, 4> kWholeRobot{"pipeline", "hal/sim", "hal/rmp", "config/scenarios"};
+
+// In the order of the chapters. The trials are those that fit an hour together, counting included.
+constexpr std::array kExperiments{
+    Experiment{"light-sweep",
+               "Chapter 3 on generated scenes while the light changes (3.1.1, 3.2.1)",
+               3,
+               60,
+               false,
+               true,
+               light_sweep,
+               color_hash,
+               kColorRooms,
+               {"tools/lab/tables/light_sweep.cpp"}},
+    Experiment{"real-video",
+               "Chapter 3 beside CAM-Shift, KCF and CSRT on real video",
+               3,
+               1,
+               true,
+               false,
+               real_video,
+               color_hash,
+               kColorRooms,
+               {"tools/lab/tables/real_video.cpp", "tools/lab/peers.cpp"}},
+    Experiment{"search-cost",
+               "What labels and search cost per image (3.3.2)",
+               3,
+               60,
+               true,
+               true,
+               search_cost,
+               color_hash,
+               kColorRooms,
+               {"tools/lab/tables/search_cost.cpp"}},
+    Experiment{"figure-3.3",
+               "A shirt followed from a corridor into daylight (Figure 3.3)",
+               3,
+               2,
+               true,
+               true,
+               figure_3_3,
+               color_hash,
+               kColorRooms,
+               {"tools/lab/tables/figure_3_3.cpp", "tools/lab/corridor_film.cpp", "config/worlds/corridor.toml"}},
+    Experiment{"closed-loop",
+               "The simulated home's robot follows a cart through changing light",
+               3,
+               3,
+               true,
+               true,
+               closed_loop,
+               home_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/closed_loop.cpp", "config/worlds/home.toml"}},
+    Experiment{"table-4.1",
+               "A camera's pose corrected on the field (Table 4.1)",
+               4,
+               60,
+               true,
+               true,
+               table_4_1,
+               localization_hash,
+               kLocalizationRooms,
+               {"tools/lab/tables/table_4_1.cpp", "config/worlds/spl-field.toml"}},
+    Experiment{"table-4.2",
+               "What a correction costs by the edges in the map (Table 4.2)",
+               4,
+               6,
+               true,
+               true,
+               table_4_2,
+               localization_hash,
+               kLocalizationRooms,
+               {"tools/lab/tables/table_4_2.cpp", "config/worlds/planar.toml"}},
+    Experiment{"section-4.3.3",
+               "The same with cloth walls in between, and without them (4.3.3)",
+               4,
+               5,
+               true,
+               true,
+               section_4_3_3,
+               localization_hash,
+               kLocalizationRooms,
+               {"tools/lab/tables/section_4_3_3.cpp", "config/worlds/occlusion.toml"}},
+    Experiment{"false-corrections",
+               "How often 'corrected' is claimed and wrong",
+               4,
+               300,
+               true,
+               true,
+               false_corrections,
+               localization_hash,
+               kLocalizationRooms,
+               {"tools/lab/tables/false_corrections.cpp", "config/worlds"}},
+    Experiment{"home-round",
+               "Three minutes through the simulated home on wheels that slip",
+               4,
+               1,
+               true,
+               true,
+               home_round,
+               round_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/home_round.cpp", "config/worlds/home.toml"}},
+    Experiment{"real-localization",
+               "Chapter 4 on a cube, a desk and ViSP's castle",
+               4,
+               40,
+               true,
+               true,
+               real_localization,
+               localization_hash,
+               kLocalizationRooms,
+               {"tools/lab/tables/real_localization.cpp"}},
+    Experiment{"table-5.1",
+               "Where the lamp is, out of the probes' shadows (Table 5.1)",
+               5,
+               60,
+               true,
+               true,
+               table_5_1,
+               lamp_hash,
+               kLampRooms,
+               {"tools/lab/tables/table_5_1.cpp", "config/worlds/home.toml"}},
+    Experiment{"lamp-cases",
+               "Lamps off, two, behind, flickering, moving; strengths and angles (5.4.1)",
+               5,
+               300,
+               true,
+               true,
+               lamp_cases,
+               lamp_hash,
+               kLampRooms,
+               {"tools/lab/tables/lamp_cases.cpp", "config/worlds/home.toml"}},
+    Experiment{"lamp-drives",
+               "A lamp's place and height while the robot drives",
+               5,
+               20,
+               true,
+               true,
+               lamp_drives,
+               lamp_hash,
+               kLampRooms,
+               {"tools/lab/tables/lamp_drives.cpp", "config/worlds/home.toml"}},
+    Experiment{"section-5.4.2",
+               "Shaded regions beside the ray tracer's, and their cost (5.4.2)",
+               5,
+               20,
+               true,
+               true,
+               section_5_4_2,
+               shade_hash,
+               kShadeRooms,
+               {"tools/lab/tables/section_5_4_2.cpp", "config/worlds"}},
+    Experiment{"shaded-ball",
+               "A ball in light and shade, with the mask of shade and without (5.4.3)",
+               5,
+               1,
+               true,
+               true,
+               shaded_ball,
+               ball_hash,
+               kBallRooms,
+               {"tools/lab/tables/shaded_ball.cpp", "tools/lab/ball_follower.cpp", "config/worlds/home.toml"}},
+    Experiment{"section-5.4.3",
+               "Algorithm 5.2 in the simulated home, a ball tracked with masks (5.4.3)",
+               5,
+               1,
+               true,
+               true,
+               section_5_4_3,
+               lamp_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/section_5_4_3.cpp", "config/worlds/home.toml"}},
+};
+
+void add_requirements(const Experiment& experiment, Report& report) {
+  for (const NamedRequirement& required : requirements_of(experiment.name)) {
+    const auto is_it = [&](const Row& row) { return row.row == required.row && row.quantity == required.quantity; };
+    const auto row = std::ranges::find_if(report.rows, is_it);
+    if (row != report.rows.end()) row->requirement = required.requirement;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string_view> Experiment::sources() const {
+  std::vector<std::string_view> all(rooms.begin(), rooms.end());
+  std::ranges::copy_if(own, std::back_inserter(all), [](std::string_view path) { return !path.empty(); });
+  return all;
 }
 
 std::span<const Experiment> experiments() {
-  static constexpr std::array kExperiments{
-      Experiment{"light-sweep", "Chapter 3 on generated scenes while the light changes (3.1.1, 3.2.1)", false,
-                 light_sweep},
-      Experiment{"real-video", "Chapter 3 beside CAM-Shift, KCF and CSRT on real video", true, real_video},
-      Experiment{"figure-3.3", "A shirt followed from a corridor into daylight (Figure 3.3)", true, figure_3_3},
-      Experiment{"closed-loop", "The simulated home's robot follows a cart through changing light", true, closed_loop},
-      Experiment{"table-4.1", "A camera's pose corrected on the field (Table 4.1)", true, table_4_1},
-      Experiment{"table-4.2", "What a correction costs by the edges in the map (Table 4.2)", true, table_4_2},
-      Experiment{"section-4.3.3", "The same with cloth walls in between, and without them (4.3.3)", true,
-                 section_4_3_3},
-      Experiment{"false-corrections", "How often 'corrected' is claimed and wrong", true, false_corrections},
-      Experiment{"home-round", "Three minutes through the simulated home on wheels that slip", true, home_round},
-      Experiment{"section-5.4.3", "Algorithm 5.2 in the simulated home, a ball tracked with masks (5.4.3)", true,
-                 section_5_4_3},
-      Experiment{"table-5.1", "Where the lamp is, out of the probes' shadows (Table 5.1)", true, table_5_1},
-      Experiment{"shaded-ball", "A ball in light and shade, with the mask of shade and without (5.4.3)", true,
-                 shaded_ball},
-      Experiment{"lamp-cases", "Lamps off, two, behind, flickering, moving; strengths and angles (5.4.1)", true,
-                 lamp_cases},
-      Experiment{"lamp-drives", "A lamp's place and height while the robot drives", true, lamp_drives},
-      Experiment{"section-5.4.2", "Shaded regions beside the ray tracer's, and their cost (5.4.2)", true,
-                 section_5_4_2},
-      Experiment{"real-localization", "Chapter 4 on a cube, a desk and ViSP's castle", true, real_localization},
-      Experiment{"search-cost", "What labels and search cost per image (3.3.2)", true, search_cost},
-  };
   return kExperiments;
+}
+
+const Experiment* experiment_of(std::string_view name) {
+  const auto found = std::ranges::find(experiments(), name, &Experiment::name);
+  return found == experiments().end() ? nullptr : &*found;
+}
+
+Result<Report> measure(const Experiment& experiment, Setting setting) {
+  if (setting.trials <= 0) setting.trials = experiment.trials;
+  auto configuration = experiment.config_sha256(setting);
+  if (!configuration) return tl::unexpected(configuration.error());
+  const auto paths = experiment.sources();
+  auto sources = sources_sha256(source_path(""), paths);
+  if (!sources) return tl::unexpected(sources.error());
+  auto report = experiment.run(setting);
+  if (!report) return report;
+  report->name = experiment.name;
+  report->config_sha256 = std::move(*configuration);
+  report->sources_sha256 = std::move(*sources);
+  report->seed = setting.seed;
+  report->runs = {{setting.seed, setting.trials, commit_of(source_path(""), paths)}};
+  add_requirements(experiment, *report);
+  return report;
 }
 
 }  // namespace cgsr::lab

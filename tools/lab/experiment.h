@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -7,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "platform/error.h"
 #include "src/config/color.h"
@@ -17,7 +19,7 @@ namespace cgsr::lab {
 /// What a table is measured with.
 struct Setting {
   std::uint64_t seed = 1;
-  std::optional<int> trials;                  ///< nothing: each table's own number
+  int trials = 0;                             ///< 0: the table's own number, which measure() fills in
   std::optional<std::filesystem::path> data;  ///< the folder of real images, where there is one
   std::optional<std::filesystem::path>
       videos;         ///< where tables that film put their films; nothing: in the folder for temporary files
@@ -25,19 +27,32 @@ struct Setting {
   config::Color configuration;
   std::string config_file;  ///< where it came from; empty: it is what ships
   std::function<void(const std::string&)> progress = [](const std::string&) {};
-
-  [[nodiscard]] std::string config_sha256() const;
 };
 
 /// One table or figure that can be reproduced.
 struct Experiment {
   std::string_view name;
   std::string_view title;
+  int chapter;        ///< of the dissertation.
+  int trials;         ///< of one run; runs of all tables together take an hour at most, more trials come by --resume.
   bool by_name_only;  ///< too slow, or in need of data that not everybody has: run only when asked for.
+  bool drawn;         ///< whether its trials depend on the seed: else there is nothing to join.
   Result<Report> (*run)(const Setting&);
+  Result<std::string> (*config_sha256)(const Setting&);  ///< of exactly the sections that it measures with.
+  std::span<const std::string_view> rooms;  ///< whose sources it measures, and the simulator's that it measures with.
+  std::array<std::string_view, 3> own;      ///< its own sources and worlds; empty: none.
+
+  /// \return rooms and own.
+  [[nodiscard]] std::vector<std::string_view> sources() const;
 };
 
 std::span<const Experiment> experiments();
+
+/// \return the table of this name; nullptr: there is none.
+const Experiment* experiment_of(std::string_view name);
+
+/// Runs a table and adds to its report what makes it comparable: requirements, hashes, seed, trials and commit.
+Result<Report> measure(const Experiment& experiment, Setting setting);
 
 // One file each in tables/.
 Result<Report> real_video(const Setting& setting);

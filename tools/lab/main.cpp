@@ -1,21 +1,19 @@
 // cgsr-lab: what `cgsr reproduce` starts. With names (or none) it reproduces tables; `follow` and `scenes` are what it is made of.
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <fstream>
+#include <algorithm>
+#include <cstdio>
 #include <vector>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
 #include "src/commands/option_checks.h"
 #include "src/commands/parse_error.h"
 #include "src/config/load.h"
 #include "tools/lab/ball_follower.h"
-#include "tools/lab/experiment.h"
+#include "tools/lab/reproduce.h"
+#include "tools/lab/searched_poses.h"
 #include "tools/lab/shaded_views.h"
 #include "tools/lab/trackers.h"
 
@@ -25,80 +23,6 @@ namespace {
 int complain(const Error& error) {
   fmt::print(stderr, "error: {}\n", error.message);
   return 1;
-}
-
-bool write_file(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  return static_cast<bool>(file.flush());
-}
-
-struct ReproduceOptions {
-  std::vector<std::string> names;
-  std::uint64_t seed = 1;
-  int trials = 0;
-  std::string data, json, html, config, videos;
-  bool list = false;
-  bool no_count = false;
-};
-
-Result<std::vector<const Experiment*>> chosen(const std::vector<std::string>& names) {
-  std::vector<const Experiment*> all;
-  for (const Experiment& experiment : experiments()) {
-    if (names.empty() && !experiment.by_name_only) all.push_back(&experiment);
-  }
-  for (const std::string& name : names) {
-    const auto found = std::ranges::find(experiments(), name, &Experiment::name);
-    if (found == experiments().end())
-      return fail(fmt::format("there is no table '{}'; --list names what there is", name));
-    all.push_back(&*found);
-  }
-  return all;
-}
-
-int list_experiments() {
-  for (const Experiment& experiment : experiments()) {
-    fmt::print("{:14} {}{}\n", experiment.name, experiment.title, experiment.by_name_only ? " (by name only)" : "");
-  }
-  return 0;
-}
-
-Result<Setting> setting_of(const ReproduceOptions& options) {
-  const auto configuration = config::load_color(options.config);
-  if (!configuration) return tl::unexpected(configuration.error());
-  Setting setting;
-  setting.configuration = *configuration;
-  setting.config_file = options.config;
-  setting.seed = options.seed;
-  setting.count = !options.no_count;
-  if (options.trials > 0) setting.trials = options.trials;
-  if (!options.data.empty()) setting.data = options.data;
-  if (!options.videos.empty()) setting.videos = options.videos;
-  if (isatty(STDERR_FILENO) != 0) {
-    setting.progress = [](const std::string& words) { fmt::print(stderr, "\r\033[K{}", words); };
-  }
-  return setting;
-}
-
-int reproduce(const ReproduceOptions& options) {
-  if (options.list) return list_experiments();
-  const auto wanted = chosen(options.names);
-  if (!wanted) return complain(wanted.error());
-  const auto setting = setting_of(options);
-  if (!setting) return complain(setting.error());
-  std::vector<Report> reports;
-  for (const Experiment* experiment : *wanted) {
-    auto report = experiment->run(*setting);
-    setting->progress("");
-    if (!report) return complain(report.error());
-    fmt::print("{}\n", to_text(*report));
-    reports.push_back(std::move(*report));
-  }
-  for (const auto& [path, text] :
-       {std::pair(options.json, to_json(reports).dump(1) + "\n"), std::pair(options.html, to_html(reports))}) {
-    if (!path.empty() && !write_file(path, text)) return complain({fmt::format("cannot write {}", path)});
-  }
-  return 0;
 }
 
 constexpr int kGeneratedImages = 150;
@@ -144,7 +68,8 @@ int follow_film(const FilmOptions& options) {
     text +=
         fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f}\n", i, (*boxes)[i] ? 1 : 0, box.x, box.y, box.width, box.height);
   }
-  return write_file(options.csv, text) ? 0 : complain({fmt::format("cannot write {}", options.csv)});
+  const auto written = write_file(options.csv, text);
+  return written ? 0 : complain(written.error());
 }
 
 struct BallOptions {
@@ -165,23 +90,6 @@ int follow_ball_film(const BallOptions& options) {
 int save_scenes(const FilmOptions& options) {
   const auto saved = film_of(options, "").and_then([&](const Film& film) { return save_film(film, options.output); });
   return saved ? 0 : complain(saved.error());
-}
-
-void add_reproduce(CLI::App& app, ReproduceOptions& options) {
-  app.add_option("name", options.names, "tables to reproduce; none: all that are not by name only");
-  app.add_flag("--list", options.list, "name what there is");
-  app.add_option("--seed", options.seed, "of everything that is drawn at random")
-      ->check(cgsr::app::whole_number())
-      ->capture_default_str();
-  app.add_option("--trials", options.trials, "instead of each table's own number")
-      ->check(cgsr::app::in_range(1, 1000000));
-  app.add_option("--config", options.config, "a robot's file, for its section [color]; none: what ships");
-  app.add_option("--data", options.data, "folder of recorded sequences")->envname("CGSR_DATA");
-  app.add_option("--videos", options.videos,
-                 "folder for the films of tables that film; none: cgsr-videos in the temporary folder");
-  app.add_flag("--no-count", options.no_count, "leave out the instructions, which are slow to count");
-  app.add_option("--json", options.json, "write the rows for machines");
-  app.add_option("--html", options.html, "write a page with tables and plots");
 }
 
 void add_film_options(CLI::App& command, FilmOptions& options) {
@@ -227,6 +135,11 @@ int main(int argc, char** argv) {
   CLI::App* shade_command = app.add_subcommand("shade", "look for shaded regions in the home, for tools/count");
   shade_command->add_option("--seed", shade_seed)->check(cgsr::app::whole_number());
   shade_command->add_option("--views", shade_views)->check(cgsr::app::in_range(1, 10000));
+  std::uint64_t search_seed = 1;
+  int search_poses = 5;
+  CLI::App* search_command = app.add_subcommand("search-pose", "search for poses on the field, for tools/count");
+  search_command->add_option("--seed", search_seed)->check(cgsr::app::whole_number());
+  search_command->add_option("--poses", search_poses)->check(cgsr::app::in_range(1, 10000));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {
@@ -237,11 +150,16 @@ int main(int argc, char** argv) {
     if (*follow_command) return follow_film(film_options);
     if (*ball_command) return follow_ball_film(ball_options);
     if (*scenes_command) return save_scenes(film_options);
+    if (*search_command) {
+      const auto searched = search_for_poses(search_seed, search_poses);
+      return searched ? 0 : complain(searched.error());
+    }
     if (*shade_command) {
       const auto looked = look_at_shade(shade_seed, shade_views);
       return looked ? 0 : complain(looked.error());
     }
-    return reproduce(reproduce_options);
+    const auto reproduced = reproduce(reproduce_options);
+    return reproduced ? *reproduced : complain(reproduced.error());
   } catch (const std::exception& error) {  // OpenCV's, of a defective picture
     return complain({error.what()});
   }

@@ -76,6 +76,14 @@ struct RobotCopy {
   sim::Pose X_RC = sim::Pose::Identity();
   geometry::Camera camera;
 
+  /// The same with the accuracy that the shipped board is stated with.
+  static RobotCopy measured(const ProbeRoom& room, std::uint32_t seed, const illumination::BoardParameters& shipped,
+                            double factor = 1.0) {
+    RobotCopy copy = measured(room, seed, factor);
+    copy.board.place_sigma_m = shipped.place_sigma_m;
+    return copy;
+  }
+
   /// Board and probes off by N(0, 0.5 mm) and 0.2 degrees, intrinsics by 0.2 %, the mount by 0.3 degrees about each axis; all times `factor`.
   static RobotCopy measured(const ProbeRoom& room, std::uint32_t seed, double factor = 1.0);
 };

@@ -1,38 +1,84 @@
 #include "tools/lab/report.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "tools/lab/report_table.h"
 
 namespace cgsr::lab {
 
-Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials) {
+namespace {
+
+bool holds(const Requirement& requirement, double value) {
+  return requirement.kind == Requirement::Kind::kAtLeast ? value >= requirement.bound : value <= requirement.bound;
+}
+
+}  // namespace
+
+std::optional<bool> Row::met() const {
+  if (!requirement || !ours) return std::nullopt;
+  if (requirement->kind != Requirement::Kind::kIntervalWithin) return holds(*requirement, *ours);
+  if (!interval) return std::nullopt;
+  return std::max(std::abs(interval->low), std::abs(interval->high)) <= requirement->bound;
+}
+
+bool Row::sure() const {
+  if (!requirement || !interval || requirement->kind == Requirement::Kind::kIntervalWithin) return true;
+  return holds(*requirement, interval->low) == holds(*requirement, interval->high);
+}
+
+Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials, Join join) {
   Row out;
   out.row = std::move(row);
   out.quantity = std::move(quantity);
   out.unit = std::move(unit);
   out.ours = value;
   out.trials = static_cast<int>(trials);
+  out.join = join;
+  return out;
+}
+
+Row sampled_row(std::string row, std::string quantity, std::string unit, std::vector<double> samples, Join join,
+                std::uint64_t seed) {
+  Row out = plain_row(std::move(row), std::move(quantity), std::move(unit), 0.0, samples.size(), join);
+  const int trials = out.trials;
+  if (join == Join::kMedian || join == Join::kP95) {
+    const double share = join == Join::kMedian ? 0.5 : 0.95;
+    out.ours = quantile(samples, share);
+    out.interval = quantile_interval(samples, share);
+  } else if (join == Join::kPaired) {
+    const PairedTest test = paired_t_test(samples);
+    out.ours = test.mean;
+    out.interval = test.interval;
+  } else if (join == Join::kPairedP) {
+    out.ours = paired_t_test(samples).p;
+  } else if (!samples.empty()) {
+    out.ours = mean(samples);
+    out.interval = bootstrap_mean(samples, 1, seed);
+    // Values that are all the same teach a bootstrap nothing; of shares, a count of all or none says how far the mean may be off.
+    if (out.unit.empty() && out.interval->low == out.interval->high && (*out.ours == 0.0 || *out.ours == 1.0))
+      out.interval = wilson(*out.ours == 0.0 ? 0 : trials, trials);
+  }
+  if (samples.empty()) {
+    out.ours = std::nullopt;
+    out.interval = std::nullopt;
+  }
+  out.samples = std::move(samples);
   return out;
 }
 
 Row mean_row(std::string row, std::string quantity, std::string unit, const std::vector<double>& values,
              std::uint64_t seed) {
-  const auto trials = static_cast<int>(values.size());
-  const double centre = mean(values);
-  Interval interval = bootstrap_mean(values, 1, seed);
-  // Values that are all the same teach a bootstrap nothing; of shares, a count of all or none says how far the mean may be off.
-  if (unit.empty() && interval.low == interval.high && (centre == 0.0 || centre == 1.0))
-    interval = wilson(centre == 0.0 ? 0 : trials, trials);
-  return {std::move(row), std::move(quantity), std::move(unit), std::nullopt, centre, interval, trials};
+  return sampled_row(std::move(row), std::move(quantity), std::move(unit), values, Join::kMean, seed);
 }
 
 Row share_row(std::string row, std::string quantity, int successes, int trials) {
   const double share = trials > 0 ? static_cast<double>(successes) / trials : 0.0;
-  return {std::move(row), std::move(quantity), "", std::nullopt, share, wilson(successes, trials), trials};
+  Row out{std::move(row), std::move(quantity), "", std::nullopt, share, wilson(successes, trials), trials};
+  out.join = Join::kShare;
+  return out;
 }
 
 Table pivot(const Report& report) {
@@ -58,15 +104,39 @@ std::string in_figures(double value) {
                         : fmt::format("{:.3f}", value);
 }
 
+std::string required_words(const Requirement& requirement) {
+  switch (requirement.kind) {
+    case Requirement::Kind::kAtMost:
+      return fmt::format("at most {:g}", requirement.bound);
+    case Requirement::Kind::kAtLeast:
+      return fmt::format("at least {:g}", requirement.bound);
+    case Requirement::Kind::kIntervalWithin:
+      return fmt::format("interval within ±{:g}", requirement.bound);
+  }
+  return "";
+}
+
 std::string in_words(const Row* row) {
   if (row == nullptr) return "";
   std::string words = row->ours ? in_figures(*row->ours) : "not there";
   if (row->interval) words += fmt::format(" {}..{}", in_figures(row->interval->low), in_figures(row->interval->high));
   if (row->dissertation) words += fmt::format(" (dissertation {})", in_figures(*row->dissertation));
+  if (row->requirement) {
+    const auto met = row->met();
+    words +=
+        fmt::format(" [required {}{}]", required_words(*row->requirement), met ? (*met ? ", met" : ", NOT MET") : "");
+  }
   return words;
 }
 
 namespace {
+
+std::string seeds_words(const Report& report) {
+  std::vector<std::uint64_t> seeds;
+  for (const Run& run : report.runs) seeds.push_back(run.seed);
+  if (seeds.empty()) seeds.push_back(report.seed);
+  return fmt::format("{}", fmt::join(seeds, ", "));
+}
 
 /// A line per step, a column per band.
 std::string to_text(const Stripe& stripe) {
@@ -98,8 +168,8 @@ std::string to_text(const Report& report) {
     for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
   }
 
-  std::string text =
-      fmt::format("{}: {}\nseed {}, configuration {}\n", report.name, report.title, report.seed, report.config_sha256);
+  std::string text = fmt::format("{}: {}\nseed {}, configuration {}, sources {}\n", report.name, report.title,
+                                 seeds_words(report), report.config_sha256, report.sources_sha256);
   for (const auto& line : cells) {
     std::string words;
     for (std::size_t i = 0; i < line.size(); ++i) words += fmt::format("{:{}}  ", line[i], widths[i]);
@@ -108,29 +178,6 @@ std::string to_text(const Report& report) {
   for (const Stripe& stripe : report.stripes) text += to_text(stripe);
   for (const std::string& note : report.notes) text += fmt::format("  - {}\n", note);
   return text;
-}
-
-nlohmann::json to_json(const std::vector<Report>& reports) {
-  auto all = nlohmann::json::array();
-  const auto or_null = [](const std::optional<double>& value) {
-    return value ? nlohmann::json(*value) : nlohmann::json();
-  };
-  for (const Report& report : reports) {
-    auto rows = nlohmann::json::array();
-    for (const Row& row : report.rows) {
-      rows.push_back(
-          {{"row", row.row},
-           {"quantity", row.quantity},
-           {"unit", row.unit},
-           {"dissertation", or_null(row.dissertation)},
-           {"ours", or_null(row.ours)},
-           {"interval", row.interval ? nlohmann::json{row.interval->low, row.interval->high} : nlohmann::json()},
-           {"trials", row.trials}});
-    }
-    all.push_back(
-        {{"name", report.name}, {"config_sha256", report.config_sha256}, {"seed", report.seed}, {"rows", rows}});
-  }
-  return all;
 }
 
 }  // namespace cgsr::lab

@@ -23,7 +23,10 @@ Table pivot(const Report& report);
 /// \return a figure with three to four digits that matter.
 std::string in_figures(double value);
 
-/// \return value, interval and the dissertation's value of one cell.
+/// \return "at most 4".
+std::string required_words(const Requirement& requirement);
+
+/// \return value, interval, the dissertation's value, what is required and whether it is met, of one cell.
 std::string in_words(const Row* row);
 
 }  // namespace cgsr::lab

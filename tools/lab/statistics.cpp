@@ -119,4 +119,24 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double quantile(std::span<const double> values, double share) {
+  if (values.empty()) return 0.0;
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  const auto count = static_cast<double>(sorted.size());
+  const auto rank = static_cast<std::size_t>(std::max(0.0, std::ceil(share * count) - 1.0));
+  return sorted[std::min(sorted.size() - 1, rank)];
+}
+
+Interval quantile_interval(std::span<const double> values, double share) {
+  if (values.empty()) return {};
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  const auto count = static_cast<double>(sorted.size());
+  const double spread = kZ95 * std::sqrt(count * share * (1.0 - share));
+  const double low = std::clamp(std::floor(share * count - spread) - 1.0, 0.0, count - 1.0);
+  const double high = std::clamp(std::ceil(share * count + spread), 0.0, count - 1.0);
+  return {sorted[static_cast<std::size_t>(low)], sorted[static_cast<std::size_t>(high)]};
+}
+
 }  // namespace cgsr::lab

@@ -38,4 +38,11 @@ PairedTest paired_t_test(std::span<const double> differences);
 
 double mean(std::span<const double> values);
 
+/// \return the value that a share of the values is not above; 0 without values.
+double quantile(std::span<const double> values, double share);
+
+/// The 95 % interval of a quantile by order statistics, whatever the distribution: the ranks within 1.96 sigma of the binomial's mean.
+/// \return the smallest and the largest value where there are too few. {0, 0} without values.
+Interval quantile_interval(std::span<const double> values, double share);
+
 }  // namespace cgsr::lab

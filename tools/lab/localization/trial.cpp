@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "platform/count_marks.h"
 #include "platform/work_budget.h"
 #include "tools/lab/source_path.h"
 
@@ -50,7 +51,10 @@ Outcome correct_once(localization::Localizer& localizer, const ImageView& image,
   Outcome outcome;
   UnlimitedBudget budget;
   do {
+    count_stage_begin();
     outcome.answer = localizer.correct(image, prior, budget);
+    count_stage_end("correct");
+    count_image_end();
     ++outcome.images;
   } while (outcome.answer.reason == localization::Reason::kSearching && outcome.images < kMostImages);
   outcome.error = error_of(outcome.answer.X_WC, truth.X_WC);

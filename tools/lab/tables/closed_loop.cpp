@@ -16,8 +16,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr int kRuns = 10;
-
 /// A figure of a run's truth and what it has to keep to.
 struct Demand {
   const char* key;
@@ -62,8 +60,8 @@ void add_demand(const std::vector<nlohmann::json>& runs, const Demand& demand, s
   const int trials = static_cast<int>(values.size());
   const auto [least, most] = std::ranges::minmax_element(values);
   report.rows.push_back(mean_row(demand.words, "mean", demand.unit, values, seed));
-  report.rows.push_back({demand.words, "worst", demand.unit, {}, demand.at_least ? *least : *most, {}, trials});
-  report.rows.push_back({demand.words, "demanded", demand.unit, {}, demand.bound, {}, trials});
+  report.rows.push_back(plain_row(demand.words, "worst", demand.unit, demand.at_least ? *least : *most, values.size(),
+                                  demand.at_least ? Join::kMin : Join::kMax));
   const auto held = std::ranges::count_if(values, [&](double value) { return demand.holds(value); });
   report.rows.push_back(share_row(demand.words, "runs that hold", static_cast<int>(held), trials));
 }
@@ -73,7 +71,7 @@ void add_demand(const std::vector<nlohmann::json>& runs, const Demand& demand, s
 Result<Report> closed_loop(const Setting& setting) {
   const std::string robot =
       setting.config_file.empty() ? source_path("config/robots/sim-home.toml") : setting.config_file;
-  const int count = setting.trials.value_or(kRuns);
+  const int count = setting.trials;
   std::vector<nlohmann::json> runs;
   for (int i = 0; i < count; ++i) {
     setting.progress(fmt::format("closed loop, run {} of {}", i + 1, count));
@@ -83,11 +81,8 @@ Result<Report> closed_loop(const Setting& setting) {
     runs.push_back(std::move(*run));
   }
   Report report;
-  report.name = "closed-loop";
   report.title =
       fmt::format("the robot follows a cart through the simulated home while the light changes, {} runs", count);
-  report.config_sha256 = runs.front().at("config_sha256").get<std::string>();
-  report.seed = setting.seed;
   for (const Demand& demand : kDemands) add_demand(runs, demand, setting.seed, report);
   for (const auto& [key, words] : {std::pair("found_share", "found where it was in view"),
                                    std::pair("found_right_share", "found there with the right box")}) {

@@ -9,14 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "platform/config/canonical.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/trial.h"
 
 namespace cgsr::lab {
 namespace {
 
-constexpr int kTrials = 2000;
 constexpr int kPerCopy = 20;
 constexpr std::array<std::string_view, 5> kWorlds{"spl-field", "planar", "occlusion", "corridor", "home"};
 constexpr std::array kScales{1.0, 3.0, 5.0};
@@ -194,7 +192,7 @@ class WorldTrials {
 Result<Report> false_corrections(const Setting& setting) {
   const auto floor = shipped_localization("floor");
   if (!floor) return tl::unexpected(floor.error());
-  const int trials = setting.trials.value_or(kTrials);
+  const int trials = setting.trials;
   Sums all;
   std::map<Kind, Sums> by_kind;
   std::map<double, Sums> by_scale;
@@ -228,10 +226,7 @@ Result<Report> false_corrections(const Setting& setting) {
   }
 
   Report report;
-  report.name = "false-corrections";
   report.title = fmt::format("'corrected' claimed and wrong, {} trials", all.trials);
-  report.config_sha256 = config::hash(*floor);
-  report.seed = setting.seed;
   const auto add = [&](const std::string& row, const Sums& sums) {
     report.rows.push_back(share_row(row, "corrected", sums.corrected, sums.trials));
     report.rows.push_back(share_row(row, "false corrections", sums.wrong, sums.trials));

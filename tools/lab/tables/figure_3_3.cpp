@@ -10,7 +10,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr int kTakes = 10;
 constexpr double kLeastPrecision = 0.9;
 constexpr double kLeastRecall = 0.5;
 
@@ -114,17 +113,14 @@ Stripe stripe_of(const CorridorTake& take) {
 
 Result<Report> figure_3_3(const Setting& setting) {
   Takes takes;
-  for (int i = 0; i < setting.trials.value_or(kTakes); ++i) {
+  for (int i = 0; i < setting.trials; ++i) {
     auto take = run_corridor_take(setting, setting.seed + static_cast<std::uint64_t>(i));
     if (!take) return tl::unexpected(take.error());
     takes.push_back(std::move(*take));
   }
   Report report;
-  report.name = "figure-3.3";
   report.title = fmt::format("a shirt followed from a corridor's lamps into daylight, {} s at {:.0f} Hz, {} takes",
                              CorridorFilm::kSeconds, CorridorFilm::kRate_hz, takes.size());
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
   for (std::size_t i = 0; i < kCorridorTrackers.size(); ++i) add_tracker_rows(takes, i, setting.seed, report);
   add_light_rows(takes, setting.seed, report);
   add_scene_rows(takes, setting.seed, report);

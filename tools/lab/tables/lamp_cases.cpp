@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/illumination/lamp.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/probe_room.h"
 
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Vector3d;
 using illumination::LampStatus;
 
-constexpr int kTrials = 1000;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLumens = 600.0;
 constexpr double kHeightSigma_m = 0.02;
@@ -90,7 +90,8 @@ Standing stand(ProbeRoom& room, const Case& which, double angle_deg, Random& ran
   return {};
 }
 
-Result<void> judge(ProbeRoom& room, const Case& which, double angle_deg, Random& random, Outcome& outcome) {
+Result<void> judge(ProbeRoom& room, const config::Robot& robot, const Case& which, double angle_deg, Random& random,
+                   Outcome& outcome) {
   Vector3d p_WL = room.p_WL();
   if (which.moves) {
     p_WL = room.p_WL() + Vector3d(random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8), 0.0);
@@ -101,13 +102,13 @@ Result<void> judge(ProbeRoom& room, const Case& which, double angle_deg, Random&
   room.scale_light(which.flicker ? random.uniform(0.4, 1.6) : 1.0);
   room.switch_lamp(0, which.lamp_to_find);
   const auto seed = static_cast<std::uint32_t>(random.next());
-  const RobotCopy copy = RobotCopy::measured(room, seed);
+  const RobotCopy copy = RobotCopy::measured(room, seed, robot.probes.board);
   const auto board = illumination::make_board(copy.board, copy.X_RC, copy.camera);
   if (!board) return tl::unexpected(board.error());
-  illumination::LampParameters lamp;
+  illumination::LampParameters lamp = robot.lamp;
   lamp.height_sigma_m = kHeightSigma_m;
   lamp.height_m += kHeightSigma_m * random.normal();
-  illumination::ProbesParameters probes;
+  illumination::ProbesParameters probes = robot.probes;
   probes.board = copy.board;
   illumination::ProbeObserver observer(*board, probes, lamp.height_m - board->X_RB.translation().z());
   ImageView image = room.shoot(standing.X_WR, seed, 0);
@@ -146,13 +147,6 @@ Result<void> judge(ProbeRoom& room, const Case& which, double angle_deg, Random&
   return {};
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void report_case(const Case& which, const Outcome& outcome, Report& report) {
   const char* const answered = which.lamp_to_find ? "answered" : "answered, wrongly";
   report.rows.push_back(share_row(which.name, answered, outcome.answered, outcome.asked));
@@ -162,17 +156,20 @@ void report_case(const Case& which, const Outcome& outcome, Report& report) {
   }
   if (!which.lamp_to_find || outcome.images == 0) return;
   const double rms = std::sqrt(outcome.squares / outcome.images);
-  const double sigma = median(outcome.sigma_cm);
+  const double sigma = quantile(outcome.sigma_cm, 0.5);
   report.rows.push_back(share_row(which.name, "within its 99 % bound", outcome.within_bound, outcome.images));
-  report.rows.push_back(plain_row(which.name, "median error", "cm", median(outcome.error_cm), outcome.error_cm.size()));
+  report.rows.push_back(sampled_row(which.name, "median error", "cm", outcome.error_cm, Join::kMedian, report.seed));
   report.rows.push_back(plain_row(which.name, "RMS error", "cm", rms, outcome.error_cm.size()));
-  report.rows.push_back(plain_row(which.name, "median stated sigma", "cm", sigma, outcome.sigma_cm.size()));
+  report.rows.push_back(
+      sampled_row(which.name, "median stated sigma", "cm", outcome.sigma_cm, Join::kMedian, report.seed));
   report.rows.push_back(plain_row(which.name, "sigma over RMS", "", sigma / rms, outcome.sigma_cm.size()));
 }
 
 }  // namespace
 
 Result<Report> lamp_cases(const Setting& setting) {
+  const auto robot = lamp_robot(setting);
+  if (!robot) return tl::unexpected(robot.error());
   ProbeRoomLight light;
   light.lumens = kLumens;
   auto room = ProbeRoom::make(light);
@@ -181,13 +178,10 @@ Result<Report> lamp_cases(const Setting& setting) {
   two.second_p_WL = Vector3d(4.2, 2.2, 2.75);
   auto room_of_two = ProbeRoom::make(two);
   if (!room_of_two) return tl::unexpected(room_of_two.error());
-  const int all = setting.trials.value_or(kTrials);
+  const int all = setting.trials;
   const int wanted = std::max(1, all / static_cast<int>(kCases.size() + 2));
   Report report;
-  report.name = "lamp-cases";
   report.title = fmt::format("lamps that are off, two, behind, flickering or moving, {} trials each", wanted);
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
   std::uint64_t label = 0;
   for (const Case& which : kCases) {
     Random random = Random(setting.seed).fork(++label);
@@ -195,7 +189,8 @@ Result<Report> lamp_cases(const Setting& setting) {
     for (int trial = 0; trial < wanted; ++trial) {
       auto& in = which.second_lamp ? **room_of_two : **room;
       const double angle_deg = random.uniform(which.behind ? 15.0 : 20.0, which.behind ? 50.0 : 60.0);
-      if (auto judged = judge(in, which, angle_deg, random, outcome); !judged) return tl::unexpected(judged.error());
+      if (auto judged = judge(in, *robot, which, angle_deg, random, outcome); !judged)
+        return tl::unexpected(judged.error());
       setting.progress(fmt::format("{}: {} of {}", which.name, trial + 1, wanted));
     }
     if (which.moves) (*room)->move_lamp(0, (*room)->p_WL());
@@ -213,7 +208,7 @@ Result<Report> lamp_cases(const Setting& setting) {
       for (int trial = 0; trial < each; ++trial) {
         // judge() sets the light itself: a flicker of exactly this factor.
         (*room)->set_base_light(factor_of(value));
-        if (auto judged = judge(**room, kCases[0], angle_of(value), random, outcome); !judged)
+        if (auto judged = judge(**room, *robot, kCases[0], angle_of(value), random, outcome); !judged)
           return tl::unexpected(judged.error());
         setting.progress(fmt::format("{} {} {}: {} of {}", title, value, unit, trial + 1, each));
       }
@@ -223,8 +218,8 @@ Result<Report> lamp_cases(const Setting& setting) {
       const std::string name = fmt::format("{} {}", value, unit);
       report.rows.push_back(share_row(name, "answered", outcome.answered, outcome.asked));
       if (outcome.error_cm.empty()) continue;
-      plot.curves[1].points.push_back({value, 0.1 * median(outcome.error_cm), {}});
-      report.rows.push_back(plain_row(name, "median error", "cm", median(outcome.error_cm), outcome.error_cm.size()));
+      plot.curves[1].points.push_back({value, 0.1 * quantile(outcome.error_cm, 0.5), {}});
+      report.rows.push_back(sampled_row(name, "median error", "cm", outcome.error_cm, Join::kMedian, setting.seed));
     }
     report.plots.push_back(std::move(plot));
     return {};

@@ -9,6 +9,7 @@
 
 #include "pipeline/geometry/pose.h"
 #include "pipeline/illumination/lamp_filter.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/probe_room.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kDrives = 100;
 constexpr int kImages = 40;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLumens = 600.0;
@@ -54,11 +54,11 @@ struct Vision {
   illumination::ProbesParameters probes;
 };
 
-Result<Vision> vision_of(const ProbeRoom& room, std::uint32_t seed) {
-  const RobotCopy copy = RobotCopy::measured(room, seed);
+Result<Vision> vision_of(const ProbeRoom& room, const config::Robot& robot, std::uint32_t seed) {
+  const RobotCopy copy = RobotCopy::measured(room, seed, robot.probes.board);
   const auto board = illumination::make_board(copy.board, copy.X_RC, copy.camera);
   if (!board) return tl::unexpected(board.error());
-  Vision vision{*board, {}, {}};
+  Vision vision{*board, robot.lamp, robot.probes};
   vision.probes.board = copy.board;
   return vision;
 }
@@ -85,33 +85,26 @@ std::vector<sim::Pose> drive(const ProbeRoom& room, Random& random) {
   return way;
 }
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
-}
-
 }  // namespace
 
 Result<Report> lamp_drives(const Setting& setting) {
+  const auto robot = lamp_robot(setting);
+  if (!robot) return tl::unexpected(robot.error());
   ProbeRoomLight light;
   light.lumens = kLumens;
   auto made = ProbeRoom::make(light);
   if (!made) return tl::unexpected(made.error());
   ProbeRoom& room = **made;
-  const int drives = setting.trials.value_or(kDrives);
+  const int drives = setting.trials;
   Report report;
-  report.name = "lamp-drives";
   report.title = fmt::format("the lamp in the world's frame, {} drives of {} images", drives, kImages);
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
 
   std::vector<double> error_cm;
   int within_bound = 0;
   std::vector<std::vector<double>> by_image(kImages);
   for (int number = 0; number < drives; ++number) {
     Random random = Random(setting.seed).fork(static_cast<std::uint64_t>(1000 + number));
-    auto vision = vision_of(room, static_cast<std::uint32_t>(random.next()));
+    auto vision = vision_of(room, *robot, static_cast<std::uint32_t>(random.next()));
     if (!vision) return tl::unexpected(vision.error());
     illumination::ProbeObserver observer(vision->board, vision->probes,
                                          vision->lamp.height_m - vision->board.X_RB.translation().z());
@@ -132,8 +125,8 @@ Result<Report> lamp_drives(const Setting& setting) {
   }
   const auto answered = static_cast<int>(error_cm.size());
   report.rows.push_back(share_row("drives", "answered", answered, drives));
-  report.rows.push_back(plain_row("drives", "median error", "cm", quantile(error_cm, 0.5), error_cm.size()));
-  report.rows.push_back(plain_row("drives", "95 % within", "cm", quantile(error_cm, 0.95), error_cm.size()));
+  report.rows.push_back(sampled_row("drives", "median error", "cm", error_cm, Join::kMedian, setting.seed));
+  report.rows.push_back(sampled_row("drives", "95 % within", "cm", error_cm, Join::kP95, setting.seed));
   report.rows.push_back(share_row("drives", "within its 99 % bound", within_bound, std::max(1, answered)));
   Plot plot{"Error on the way", "image", "cm", {{"median", {}}}};
   for (std::size_t image = 0; image < by_image.size(); ++image) {
@@ -147,7 +140,7 @@ Result<Report> lamp_drives(const Setting& setting) {
   std::vector<double> height_cm;
   for (int number = 0; number < drives; ++number) {
     Random random = Random(setting.seed).fork(static_cast<std::uint64_t>(5000 + number));
-    auto vision = vision_of(room, static_cast<std::uint32_t>(random.next()));
+    auto vision = vision_of(room, *robot, static_cast<std::uint32_t>(random.next()));
     if (!vision) return tl::unexpected(vision.error());
     illumination::LampParameters lamp = vision->lamp;
     lamp.height_sigma_m = kUnknownHeight_m;

@@ -15,7 +15,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr int kTrials = 200;
 constexpr double kLow = 0.6, kHigh = 1.0;  // the range of Alg. 3.1
 constexpr double kSpread = 0.05;           // around a brightness of the falling curve, per channel
 
@@ -160,7 +159,7 @@ void sweep_brightness(const Setting& setting, int trials, Report& report) {
       const std::array figures{tally.precision, tally.iou, tally.found};
       for (std::size_t i = 0; i < figures.size(); ++i) {
         const Row figure = mean_row("", "", "", figures[i], setting.seed);
-        plot.curves[i].points.push_back({light, *figure.ours, figure.interval});
+        plot.curves[i].points.push_back({light, figure.ours.value_or(0.0), figure.interval});
       }
     }
     report.plots.push_back(std::move(plot));
@@ -226,12 +225,12 @@ void sweep_lower_bound(const Setting& setting, int trials, Report& report) {
 Result<Report> light_sweep(const Setting& setting) {
   Report report{"light-sweep",
                 "generated scenes, one new object each, in clutter of which a third has the object's hues",
-                setting.config_sha256(),
+                "",
                 setting.seed,
                 {},
                 {},
                 {}};
-  const int trials = setting.trials.value_or(kTrials);
+  const int trials = setting.trials;
   add_inside_rows(setting, trials, report);
   sweep_lower_bound(setting, trials / 2, report);
   sweep_brightness(setting, trials / 4, report);

@@ -18,7 +18,6 @@
 
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/world/load.h"
-#include "platform/config/canonical.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
 #include "src/output/map_overlay.h"
@@ -314,8 +313,8 @@ struct CastleTally {
   void add_rows(const std::string& row, Report& report) const {
     const auto trials = static_cast<int>(found.size());
     report.rows.push_back(share_row(row, "below 1 % and 1 degree", good, trials));
-    report.rows.push_back({row, "median position", "%", {}, median_of(position_percent), {}, trials});
-    report.rows.push_back({row, "median direction", "deg", {}, median_of(direction_deg), {}, trials});
+    report.rows.push_back(sampled_row(row, "median position", "%", position_percent, Join::kMedian, 0));
+    report.rows.push_back(sampled_row(row, "median direction", "deg", direction_deg, Join::kMedian, 0));
   }
 };
 
@@ -326,7 +325,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
   const Vector3d centre = centre_of(*map);
   localization::Localizer localizer(*map, camera, free.localizer);
   const auto pictures = pictures_of(kCastle / "Images");
-  const int most = std::min(setting.trials.value_or(1000), static_cast<int>(pictures.size()));
+  const int most = std::min(setting.trials, static_cast<int>(pictures.size()));
   for (const double off : {2.0, 5.0}) {
     const std::string from = fmt::format("from {:.0f} % and {:.0f} degrees", off, off);
     setting.progress("Castle-simu, " + from);
@@ -393,10 +392,7 @@ Result<Report> real_localization(const Setting& setting) {
   const auto free = shipped_localization("free");
   if (!free) return tl::unexpected(free.error());
   Report report;
-  report.name = "real-localization";
   report.title = "images that others made";
-  report.config_sha256 = config::hash(*free);
-  report.seed = setting.seed;
   if (setting.data) {
     for (const auto& sequence : {cube_of(*setting.data), desk_of(*setting.data)}) {
       if (!sequence) continue;

@@ -102,7 +102,7 @@ Result<Report> real_video(const Setting& setting) {
   if (!setting.data) return fail("real-video needs the folder of recorded sequences: set CGSR_DATA or give --data");
   Report report{"real-video",
                 "precision (Eq. 3.2), recall, IoU and cost on recorded sequences, learned from the first image alone",
-                setting.config_sha256(),
+                "",
                 setting.seed,
                 {},
                 {},

@@ -16,7 +16,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr int kImages = 60;  // per film, if --trials does not say otherwise
 constexpr int kGenerated = 2;
 constexpr double kDissertation = 1000.0 / 21.0;  // Minstr per image, had every cycle of the 1 GHz been an instruction
 
@@ -94,8 +93,8 @@ struct Total {
 void add_rows(const std::string& row, const std::string& what, const Total& total, std::optional<double> dissertation,
               Report& report) {
   report.rows.push_back({row, what, "Minstr", dissertation, total.cost.mean_minstr, std::nullopt, total.images});
-  report.rows.push_back(
-      {row, what + ", worst", "Minstr", std::nullopt, total.cost.worst_minstr, std::nullopt, total.images});
+  report.rows.push_back(plain_row(row, what + ", worst", "Minstr", total.cost.worst_minstr,
+                                  static_cast<std::size_t>(total.images), Join::kMax));
 }
 
 }  // namespace
@@ -103,12 +102,12 @@ void add_rows(const std::string& row, const std::string& what, const Total& tota
 Result<Report> search_cost(const Setting& setting) {
   Report report{"search-cost",
                 "instructions per image at 640x480 YUYV: every window of every size, the whole image searched",
-                setting.config_sha256(),
+                "",
                 setting.seed,
                 {},
                 {},
                 {}};
-  const int images = setting.trials.value_or(kImages) + 1;
+  const int images = setting.trials + 1;
   const Scratch scratch;
   auto all = generated_cases(setting, images, scratch.path());
   if (!all) return tl::unexpected(all.error());

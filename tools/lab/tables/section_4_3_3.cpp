@@ -6,14 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "platform/config/canonical.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/trial.h"
 
 namespace cgsr::lab {
 namespace {
-
-constexpr int kTrials = 10;
 
 bool is_occluder(const std::string& name) {
   return name.starts_with("blue ") || name.starts_with("yellow ");
@@ -24,17 +21,6 @@ struct Paired {
   Tally with, without;
   std::vector<double> position_cm, direction_deg;
 };
-
-Row difference_row(const std::string& row, const std::string& quantity, const std::string& unit,
-                   const std::vector<double>& differences) {
-  const PairedTest test = paired_t_test(differences);
-  Row made{row, quantity, unit, {}, test.mean, test.interval, static_cast<int>(differences.size())};
-  return made;
-}
-
-Row p_row(const std::string& row, const std::string& quantity, const std::vector<double>& differences) {
-  return {row, quantity, "", {}, paired_t_test(differences).p, {}, static_cast<int>(differences.size())};
-}
 
 }  // namespace
 
@@ -53,7 +39,7 @@ Result<Report> section_4_3_3(const Setting& setting) {
   if (!without) return tl::unexpected(without.error());
   const auto& views = (*with)->world().views;
 
-  const int trials = setting.trials.value_or(kTrials);
+  const int trials = setting.trials;
   for (int t = 0; t < trials; ++t) {
     // The same errors of camera, mount and of all that stands in both.
     const auto seed =
@@ -92,20 +78,20 @@ Result<Report> section_4_3_3(const Setting& setting) {
   }
 
   Report report;
-  report.name = "section-4.3.3";
   report.title = fmt::format("{} poses before hidden edges, {} trials each", views.size(), trials);
-  report.config_sha256 = config::hash(*floor);
-  report.seed = setting.seed;
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     const std::string& name = contenders[c].name;
     const std::pair<double, double> theirs = c == 0 ? std::pair(7.20, 7.62) : std::pair(62.4, 42.1);
     add_rows(name + ", cloth walls", results[c].with, setting.seed, report, theirs);
     add_rows(name + ", without them", results[c].without, setting.seed, report);
     const std::string row = name + ", what they change";
-    report.rows.push_back(difference_row(row, "position error", "cm", results[c].position_cm));
-    report.rows.push_back(difference_row(row, "direction error", "deg", results[c].direction_deg));
-    report.rows.push_back(p_row(row, "p, position", results[c].position_cm));
-    report.rows.push_back(p_row(row, "p, direction", results[c].direction_deg));
+    const auto add = [&](const char* quantity, const char* unit, const std::vector<double>& differences, Join join) {
+      report.rows.push_back(sampled_row(row, quantity, unit, differences, join, setting.seed));
+    };
+    add("position error", "cm", results[c].position_cm, Join::kPaired);
+    add("direction error", "deg", results[c].direction_deg, Join::kPaired);
+    add("p, position", "", results[c].position_cm, Join::kPairedP);
+    add("p, direction", "", results[c].direction_deg, Join::kPairedP);
   }
   report.notes = {
       "Paired: pose, prior, calibration and noise of a trial are the same with the cloth walls and without. What they "

@@ -11,6 +11,7 @@
 #include "hal/sim/render/truth_images.h"
 #include "pipeline/render/shadow_volumes.h"
 #include "platform/count_marks.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/standpoints.h"
@@ -22,7 +23,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::array<std::string_view, 3> kWorlds{"home", "occlusion", "people"};
-constexpr int kTrials = 40;  // a world
 constexpr int kCountedViews = 10;
 constexpr double kBallRadius_m = 0.10;
 constexpr std::size_t kLeastCells = 100;  // possibly shaded, for a view to count
@@ -94,19 +94,19 @@ bool hidden(const sim::Tracer& tracer, const Vector3d& p_W, const Vector3d& p_WL
 /// One world as it is and as a robot has it.
 class Room {
  public:
-  static Result<std::unique_ptr<Room>> make(const std::string& world, std::uint64_t seed) {
+  static Result<std::unique_ptr<Room>> make(const std::string& world, const render::ShadeParameters& shipped,
+                                            std::uint64_t seed) {
     auto place = Place::make(world);
     if (!place) return tl::unexpected(place.error());
     auto exact = survey(**place, sim::CalibrationErrors::none(), 0);
     if (!exact) return tl::unexpected(exact.error());
     auto told = survey(**place, map_errors(), static_cast<std::uint32_t>(seed));
     if (!told) return tl::unexpected(told.error());
-    const render::ShadeParameters shipped;
     auto renderer =
         sim::Renderer::make((*place)->scene(), (*place)->camera().scaled_to(shipped.width, shipped.height), {});
     if (!renderer) return tl::unexpected(renderer.error());
     return std::unique_ptr<Room>(
-        new Room(world, std::move(*place), std::move(*exact), std::move(*told), std::move(*renderer)));
+        new Room(world, shipped, std::move(*place), std::move(*exact), std::move(*told), std::move(*renderer)));
   }
 
   /// A view with shade in it, under a lamp anywhere in the room.
@@ -157,8 +157,8 @@ class Room {
   }
 
  private:
-  Room(const std::string& world, std::unique_ptr<Place> place, Survey exact, Survey told,
-       std::unique_ptr<sim::Renderer> renderer)
+  Room(const std::string& world, const render::ShadeParameters& shipped, std::unique_ptr<Place> place, Survey exact,
+       Survey told, std::unique_ptr<sim::Renderer> renderer)
       : place_(std::move(place)),
         exact_(std::move(exact)),
         told_(std::move(told)),
@@ -166,8 +166,8 @@ class Room {
         edges_(place_->scene()),
         area_(area_of(world)),
         state_(place_->state()),
-        exact_volumes_(exact_.map, {}),
-        told_volumes_(told_.map, {}) {}
+        exact_volumes_(exact_.map, shipped),
+        told_volumes_(told_.map, shipped) {}
 
   [[nodiscard]] Vector3d p_WL() const { return state_.lamps[0].p_WL; }
 
@@ -296,6 +296,8 @@ struct Pooled {
 }  // namespace
 
 Result<void> look_at_shade(std::uint64_t seed, int views) {
+  const auto robot = lamp_robot({});
+  if (!robot) return tl::unexpected(robot.error());
   auto place = Place::make("home");
   if (!place) return tl::unexpected(place.error());
   auto told = survey(**place, sim::CalibrationErrors::none(), 0);
@@ -303,7 +305,7 @@ Result<void> look_at_shade(std::uint64_t seed, int views) {
   const TrueEdges edges((*place)->scene());
   Random random = Random(seed).fork(0x542);
   const Vector3d p_WL = (*place)->state().lamps[0].p_WL;
-  render::ShadowVolumes volumes(told->map, {});
+  render::ShadowVolumes volumes(told->map, robot->shade.masks);
   const auto look = [&](const geometry::Pose& X_WC, const char* stage) {
     count_stage_begin();
     volumes.look(X_WC, told->camera, p_WL, known_errors());
@@ -320,17 +322,16 @@ Result<void> look_at_shade(std::uint64_t seed, int views) {
 }
 
 Result<Report> section_5_4_2(const Setting& setting) {
+  const auto robot = lamp_robot(setting);
+  if (!robot) return tl::unexpected(robot.error());
   Report report;
-  report.name = "section-5.4.2";
-  const int trials = setting.trials.value_or(kTrials);
+  const int trials = setting.trials;
   report.title =
       fmt::format("shaded regions beside the ray tracer's, {} views a world, each under a lamp of its own", trials);
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
   Pooled pooled;
   for (const std::string_view world : kWorlds) {
     const std::string name(world);
-    auto room = Room::make(name, setting.seed);
+    auto room = Room::make(name, robot->shade.masks, setting.seed);
     if (!room) return tl::unexpected(room.error());
     Random random = Random(setting.seed).fork(0x5420 + name.size());
     Tally tally;
@@ -352,7 +353,8 @@ Result<Report> section_5_4_2(const Setting& setting) {
       const int images = stage == "new_lamp" ? 1 : kCountedViews;
       const std::string row = "home, cost, " + stage;
       report.rows.push_back(figure(row, "mean", "Minstr", cost.mean_minstr, images));
-      report.rows.push_back(figure(row, "worst", "Minstr", cost.worst_minstr, images));
+      report.rows.push_back(
+          plain_row(row, "worst", "Minstr", cost.worst_minstr, static_cast<std::size_t>(images), Join::kMax));
     }
   }
   report.notes = {

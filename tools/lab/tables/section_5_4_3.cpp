@@ -15,13 +15,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/color/learn/model_file.h"
-#include "platform/config/canonical.h"
 #include "src/boot/robot.h"
-#include "src/config/load.h"
 #include "src/output/overlay.h"
 #include "tools/lab/ball_scoring.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/experiment.h"
-#include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
 namespace {
@@ -198,8 +196,7 @@ void add_score(const std::string& row, const BallScore& score, std::optional<dou
 }  // namespace
 
 Result<Report> section_5_4_3(const Setting& setting) {
-  auto config = config::load_robot(setting.config_file.empty() ? source_path("config/robots/sim-home-lamp.toml")
-                                                               : setting.config_file);
+  auto config = lamp_robot(setting);
   if (!config) return tl::unexpected(config.error());
   config->sim.seed = static_cast<int>(setting.seed);
   const int width_px = config->sim.width_px;
@@ -228,10 +225,7 @@ Result<Report> section_5_4_3(const Setting& setting) {
 
   const boot::Outputs& outputs = (*robot)->state().outputs;
   Report report;
-  report.name = "section-5.4.3";
   report.title = fmt::format("Algorithm 5.2 from exploring to tracking, {} images", images);
-  report.config_sha256 = config::hash(*config);
-  report.seed = setting.seed;
   report.rows.push_back({"the run", "images", "", 1821.0, static_cast<double>(images), std::nullopt, 1});
   for (const sinks::TaskStep& step : outputs.statistics->run().task) {
     report.rows.push_back(
@@ -244,8 +238,8 @@ Result<Report> section_5_4_3(const Setting& setting) {
         {"lamp's error in the world", "at the end", "cm", std::nullopt, 100.0 * light.last_m, std::nullopt, 1});
     report.rows.push_back(
         {"lamp's error in the world", "mean", "cm", std::nullopt, 100.0 * light.mean_m, std::nullopt, compared});
-    report.rows.push_back(
-        {"lamp's error in the world", "worst", "cm", std::nullopt, 100.0 * light.worst_m, std::nullopt, compared});
+    report.rows.push_back(plain_row("lamp's error in the world", "worst", "cm", 100.0 * light.worst_m,
+                                    static_cast<std::size_t>(light.compared), Join::kMax));
   }
   add_score("with the mask", judge.with(), kTheirsWith, report);
   add_score("without a mask", judge.without(), kTheirsWithout, report);

@@ -19,6 +19,7 @@
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/ball_scoring.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/film.h"
@@ -26,7 +27,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr int kTakes = 3;
 constexpr int kCounted = 36;  // images of the first take
 constexpr int kWiden_cells = 1;
 constexpr std::array kFactors{0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75};
@@ -109,10 +109,10 @@ Result<void> save(BallFilm& film, const render::ShadeMasks& masks, const std::fi
   return {};
 }
 
-Result<Take> run_take(const Setting& setting, std::uint64_t seed) {
+Result<Take> run_take(const Setting& setting, const config::Robot& robot, std::uint64_t seed) {
   auto film = BallFilm::make(seed);
   if (!film) return tl::unexpected(film.error());
-  render::ShadowVolumes volumes((*film)->map(), render::ShadeParameters{});
+  render::ShadowVolumes volumes((*film)->map(), robot.shade.masks);
   const render::ShadeMasks masks = volumes.look((*film)->X_WC(), (*film)->camera(), (*film)->p_WL(), kWiden_cells);
   const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
   const color::ShadeMaskView all_lit{nothing.data(), masks.width, masks.height, masks.width};
@@ -122,12 +122,12 @@ Result<Take> run_take(const Setting& setting, std::uint64_t seed) {
   std::vector<Entry> entries;
   const std::array masks_given{view_of(masks), color::ShadeMaskView{}, all_lit};
   for (const color::ShadeMaskView& mask : masks_given) {
-    auto one = entry(**film, shot, setting, {}, mask);
+    auto one = entry(**film, shot, setting, robot.integrated, mask);
     if (!one) return tl::unexpected(one.error());
     entries.push_back(std::move(*one));
   }
   for (const double factor : kFactors) {
-    color::IntegratedParameters parameters;
+    color::IntegratedParameters parameters = robot.integrated;
     parameters.dark_factors.fill(factor);
     for (const color::ShadeMaskView& mask : {view_of(masks), color::ShadeMaskView{}}) {
       auto one = entry(**film, shot, setting, parameters, mask);
@@ -176,16 +176,16 @@ void add_score(const std::string& row, const BallScore& score, std::optional<dou
   report.rows.push_back(
       {row, "false", "", std::nullopt, score.false_share(), std::nullopt, score.images + score.absent});
   if (score.brown > 0) {
-    report.rows.push_back(
-        {row, "brown tracked", "images", std::nullopt, 1.0 * score.brown_tracked, std::nullopt, score.brown});
+    report.rows.push_back(plain_row(row, "brown tracked", "images", 1.0 * score.brown_tracked,
+                                    static_cast<std::size_t>(score.brown), Join::kMax));
   }
 }
 
-Result<void> add_cost(const Setting& setting, Report& report) {
+Result<void> add_cost(const Setting& setting, const config::Robot& robot, Report& report) {
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-ball-{}", getpid());
   auto film = BallFilm::make(setting.seed);
   if (!film) return tl::unexpected(film.error());
-  render::ShadowVolumes volumes((*film)->map(), render::ShadeParameters{});
+  render::ShadowVolumes volumes((*film)->map(), robot.shade.masks);
   const render::ShadeMasks masks = volumes.look((*film)->X_WC(), (*film)->camera(), (*film)->p_WL(), kWiden_cells);
   Result<void> done = save(**film, masks, folder);
   for (const bool with_mask : {true, false}) {
@@ -202,8 +202,8 @@ Result<void> add_cost(const Setting& setting, Report& report) {
     const std::string row(kNames[with_mask ? kWithMask : kWithout]);
     report.rows.push_back(
         {row, "work", "Minstr", std::nullopt, counted->image.mean_minstr, std::nullopt, counted->images});
-    report.rows.push_back(
-        {row, "worst", "Minstr", std::nullopt, counted->image.worst_minstr, std::nullopt, counted->images});
+    report.rows.push_back(plain_row(row, "worst", "Minstr", counted->image.worst_minstr,
+                                    static_cast<std::size_t>(counted->images), Join::kMax));
   }
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);
@@ -213,19 +213,18 @@ Result<void> add_cost(const Setting& setting, Report& report) {
 }  // namespace
 
 Result<Report> shaded_ball(const Setting& setting) {
-  const int takes = setting.trials.value_or(kTakes);
+  const auto robot = lamp_robot(setting);
+  if (!robot) return tl::unexpected(robot.error());
+  const int takes = setting.trials;
   std::vector<Take> all;
   for (int i = 0; i < takes; ++i) {
-    auto take = run_take(setting, setting.seed + static_cast<std::uint64_t>(i));
+    auto take = run_take(setting, *robot, setting.seed + static_cast<std::uint64_t>(i));
     if (!take) return tl::unexpected(take.error());
     all.push_back(std::move(*take));
   }
   Report report;
-  report.name = "shaded-ball";
   report.title =
       fmt::format("a ball in light and shade, {} takes of {} images, a minute each", takes, BallFilm::kImages);
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
   double shade = 0.0;
   for (std::size_t i = 0; i < kContenders; ++i) {
     const std::string name(kNames[i]);
@@ -270,7 +269,7 @@ Result<Report> shaded_ball(const Setting& setting) {
   }
   report.plots = {std::move(plot), std::move(accuracy)};
   if (setting.count) {
-    if (auto done = add_cost(setting, report); !done) return tl::unexpected(done.error());
+    if (auto done = add_cost(setting, *robot, report); !done) return tl::unexpected(done.error());
   }
   report.pictures = std::move(all.front().pictures);
   report.notes = {

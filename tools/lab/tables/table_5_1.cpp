@@ -12,6 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "pipeline/illumination/lamp.h"
+#include "tools/lab/configurations.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/image.h"
@@ -23,7 +24,6 @@ namespace {
 
 using illumination::LampStatus;
 
-constexpr int kTrials = 150;
 constexpr int kCountedImages = 30;
 constexpr std::array kAngles_deg{20, 30, 40, 50, 60};
 constexpr std::array kTheirBoth_cm{11.2, 13.4, 18.1, 21.9, 29.0};
@@ -60,7 +60,7 @@ void judge(const sim::Pose& X_WR, const Eigen::Vector3d& p_WL, const illuminatio
   if (lamp.triangulated) trials.triangulated_cm.push_back(100.0 * (lamp.p_RL_triangulated - p_RL).norm());
 }
 
-Result<Trials> run(ProbeRoom& room, int row, int tips, int wanted, const Setting& setting) {
+Result<Trials> run(ProbeRoom& room, const config::Robot& robot, int row, int tips, int wanted, const Setting& setting) {
   Trials trials;
   const int angle_deg = kAngles_deg[static_cast<std::size_t>(row)];
   Random random = Random(setting.seed).fork(static_cast<std::uint64_t>(100 * row + tips));
@@ -71,11 +71,11 @@ Result<Trials> run(ProbeRoom& room, int row, int tips, int wanted, const Setting
     const auto visible = std::ranges::count_if(truth, [](const sim::ProbeShadow& shadow) { return shadow.visible; });
     if (visible != tips) continue;
     const auto seed = static_cast<std::uint32_t>(random.next());
-    const RobotCopy copy = RobotCopy::measured(room, seed);
+    const RobotCopy copy = RobotCopy::measured(room, seed, robot.probes.board);
     const auto board = illumination::make_board(copy.board, copy.X_RC, copy.camera);
     if (!board) return tl::unexpected(board.error());
-    const illumination::LampParameters lamp;
-    illumination::ProbesParameters probes;
+    const illumination::LampParameters& lamp = robot.lamp;
+    illumination::ProbesParameters probes = robot.probes;
     probes.board = copy.board;
     illumination::ProbeObserver observer(*board, probes, lamp.height_m - board->X_RB.translation().z());
     const auto observation = observer.observe(room.shoot(*X_WR, seed, static_cast<std::uint64_t>(draw)));
@@ -113,20 +113,19 @@ Result<Counted> count_observation(ProbeRoom& room, const Setting& setting) {
 }  // namespace
 
 Result<Report> table_5_1(const Setting& setting) {
+  const auto robot = lamp_robot(setting);
+  if (!robot) return tl::unexpected(robot.error());
   ProbeRoomLight light;
   light.lumens = kLumens;
   auto room = ProbeRoom::make(light);
   if (!room) return tl::unexpected(room.error());
-  const int wanted = setting.trials.value_or(kTrials);
+  const int wanted = setting.trials;
   Report report;
-  report.name = "table-5.1";
   report.title = fmt::format("where the lamp is, out of one image, {} trials a row", wanted);
-  report.config_sha256 = setting.config_sha256();
-  report.seed = setting.seed;
   Plot plot{"Error against the light's angle", "deg", "cm", {{"both shadows", {}}, {"one shadow", {}}}};
   for (int tips = 2; tips >= 1; --tips) {
     for (int row = 0; row < static_cast<int>(kAngles_deg.size()); ++row) {
-      auto trials = run(**room, row, tips, wanted, setting);
+      auto trials = run(**room, *robot, row, tips, wanted, setting);
       if (!trials) return tl::unexpected(trials.error());
       const auto k = static_cast<std::size_t>(row);
       const std::string name = fmt::format("{}, {} deg", tips == 2 ? "both" : "one", kAngles_deg[k]);
@@ -155,7 +154,8 @@ Result<Report> table_5_1(const Setting& setting) {
     if (!counted) return tl::unexpected(counted.error());
     for (const auto& [stage, cost] : counted->stages) {
       report.rows.push_back(plain_row("cost, " + stage, "mean", "Minstr", cost.mean_minstr, kCountedImages));
-      report.rows.push_back(plain_row("cost, " + stage, "worst", "Minstr", cost.worst_minstr, kCountedImages));
+      report.rows.push_back(
+          plain_row("cost, " + stage, "worst", "Minstr", cost.worst_minstr, kCountedImages, Join::kMax));
     }
   }
   report.notes.emplace_back(

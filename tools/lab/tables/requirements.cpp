@@ -1,0 +1,162 @@
+#include "tools/lab/tables/requirements.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace cgsr::lab {
+namespace {
+
+constexpr Requirement at_least(double bound) {
+  return {bound, Requirement::Kind::kAtLeast};
+}
+constexpr Requirement at_most(double bound) {
+  return {bound, Requirement::Kind::kAtMost};
+}
+constexpr Requirement interval_within(double bound) {
+  return {bound, Requirement::Kind::kIntervalWithin};
+}
+
+// Units are those of the rows: cm, degrees, px, Minstr (million instructions per image), s, shares.
+constexpr std::array kRequirements{
+    // Chapter 3.
+    NamedRequirement{"light-sweep", "ours, light 0.6 to 1", "precision", at_least(0.95)},
+    NamedRequirement{"light-sweep", "ours, light 0.6 to 1", "IoU", at_least(0.85)},
+    NamedRequirement{"light-sweep", "light estimate", "nearest grid light", at_least(0.7)},
+    NamedRequirement{"light-sweep", "light estimate", "error per channel", at_most(0.07)},
+    NamedRequirement{"real-video", "mean / ours", "precision", at_least(0.6)},
+    NamedRequirement{"real-video", "mean / ours", "recall", at_least(0.6)},
+    NamedRequirement{"search-cost", "all", "labels and search", at_most(5.0)},
+    NamedRequirement{"search-cost", "all", "labels and search, worst", at_most(7.0)},
+    NamedRequirement{"figure-3.3", "ours", "seconds that hold", at_least(1.0)},
+    NamedRequirement{"closed-loop", "in view from the first sight on", "worst", at_least(0.95)},
+    NamedRequirement{"closed-loop", "nearest by its own motion, of the set distance", "worst", at_least(0.8)},
+    NamedRequirement{"closed-loop", "commanded zero after the object came nearer", "worst", at_most(0.5)},
+    NamedRequirement{"closed-loop", "commanded zero after a loss", "worst", at_most(0.5)},
+    NamedRequirement{"closed-loop", "standing after a loss", "worst", at_most(0.5)},
+    // Chapter 4.
+    NamedRequirement{"table-4.1", "ours", "corrected", at_least(0.95)},
+    NamedRequirement{"table-4.1", "ours", "position error", at_most(2.5)},
+    NamedRequirement{"table-4.1", "ours", "direction error", at_most(0.5)},
+    NamedRequirement{"table-4.1", "ours, perfect copy", "corrected", at_least(0.97)},
+    NamedRequirement{"table-4.1", "ours, perfect copy", "position error", at_most(1.0)},
+    NamedRequirement{"table-4.1", "ours, perfect copy", "direction error", at_most(0.2)},
+    NamedRequirement{"section-4.3.3", "ours, what they change", "position error", interval_within(0.5)},
+    NamedRequirement{"section-4.3.3", "ours, what they change", "direction error", interval_within(0.2)},
+    NamedRequirement{"false-corrections", "all", "false corrections", at_most(0.005)},
+    NamedRequirement{"false-corrections", "right map, nothing in front, prior 1 times as wide", "corrected",
+                     at_least(0.95)},
+    NamedRequirement{"false-corrections", "right map, nothing in front, prior 3 times as wide", "corrected",
+                     at_least(0.6)},
+    NamedRequirement{"home-round", "camera's position, worst image of a run", "largest", at_most(6.0)},
+    NamedRequirement{"home-round", "camera's direction, worst image of a run", "largest", at_most(1.5)},
+    NamedRequirement{"table-4.2", "50 edges, others behind, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "50 edges, others behind, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "50 edges, half in view, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "50 edges, half in view, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "150 edges, others behind, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "150 edges, others behind, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "150 edges, half in view, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "150 edges, half in view, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "450 edges, others behind, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "450 edges, others behind, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "450 edges, half in view, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "450 edges, half in view, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "1250 edges, others behind, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "1250 edges, others behind, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "1250 edges, half in view, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "1250 edges, half in view, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "3725 edges, others behind, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "3725 edges, others behind, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "3725 edges, half in view, ours", "mean", at_most(10.0)},
+    NamedRequirement{"table-4.2", "3725 edges, half in view, ours", "worst", at_most(13.0)},
+    NamedRequirement{"table-4.2", "100000 edges, others behind, ours", "mean", at_most(16.0)},
+    NamedRequirement{"table-4.2", "1000000 edges, others behind, ours", "mean", at_most(20.0)},
+    NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "below 1 % and 1 degree",
+                     at_least(0.95)},
+    NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "below 1 % and 1 degree",
+                     at_least(0.8)},
+    NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "median position",
+                     at_most(0.25)},
+    NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "median direction",
+                     at_most(0.25)},
+    NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "median position",
+                     at_most(0.25)},
+    NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "median direction",
+                     at_most(0.25)},
+    NamedRequirement{"real-localization", "cube, ours", "followed (Canny)", at_least(1.0)},
+    NamedRequirement{"real-localization", "cube, ours", "median distance", at_most(2.0)},
+    NamedRequirement{"real-localization", "cube, ours", "within 3 px", at_least(0.8)},
+    // Chapter 5.
+    NamedRequirement{"table-5.1", "both, 20 deg", "mean error", at_most(4.0)},
+    NamedRequirement{"table-5.1", "both, 20 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "both, 20 deg", "error, height triangulated", at_most(15.0)},
+    NamedRequirement{"table-5.1", "both, 30 deg", "mean error", at_most(4.0)},
+    NamedRequirement{"table-5.1", "both, 30 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "both, 30 deg", "error, height triangulated", at_most(15.0)},
+    NamedRequirement{"table-5.1", "both, 40 deg", "mean error", at_most(5.0)},
+    NamedRequirement{"table-5.1", "both, 40 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "both, 40 deg", "error, height triangulated", at_most(15.0)},
+    NamedRequirement{"table-5.1", "both, 50 deg", "mean error", at_most(5.5)},
+    NamedRequirement{"table-5.1", "both, 50 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "both, 60 deg", "mean error", at_most(7.0)},
+    NamedRequirement{"table-5.1", "both, 60 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "one, 20 deg", "mean error", at_most(6.0)},
+    NamedRequirement{"table-5.1", "one, 20 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "one, 30 deg", "mean error", at_most(6.0)},
+    NamedRequirement{"table-5.1", "one, 30 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "one, 40 deg", "mean error", at_most(6.5)},
+    NamedRequirement{"table-5.1", "one, 40 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "one, 50 deg", "mean error", at_most(7.0)},
+    NamedRequirement{"table-5.1", "one, 50 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "one, 60 deg", "mean error", at_most(9.0)},
+    NamedRequirement{"table-5.1", "one, 60 deg", "answered", at_least(0.9)},
+    NamedRequirement{"table-5.1", "cost, probes", "mean", at_most(2.0)},
+    NamedRequirement{"lamp-cases", "one lamp", "answered", at_least(0.95)},
+    NamedRequirement{"lamp-cases", "one lamp", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "one lamp", "sigma over RMS", at_most(1.5)},
+    NamedRequirement{"lamp-cases", "two lamps", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "lamp behind", "answered", at_least(0.95)},
+    NamedRequirement{"lamp-cases", "lamp behind", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "lamp behind", "sigma over RMS", at_most(1.5)},
+    NamedRequirement{"lamp-cases", "flicker", "answered", at_least(0.95)},
+    NamedRequirement{"lamp-cases", "flicker", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "flicker", "sigma over RMS", at_most(1.5)},
+    NamedRequirement{"lamp-cases", "a lamp that moves", "answered", at_least(0.95)},
+    NamedRequirement{"lamp-cases", "a lamp that moves", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "a lamp that moves", "sigma over RMS", at_most(1.5)},
+    NamedRequirement{"lamp-cases", "a hand's shadow", "answered", at_least(0.95)},
+    NamedRequirement{"lamp-cases", "a hand's shadow", "within its 99 % bound", at_least(0.97)},
+    NamedRequirement{"lamp-cases", "a hand's shadow", "sigma over RMS", at_most(1.5)},
+    NamedRequirement{"lamp-cases", "no lamp", "answered, wrongly", at_most(0.0)},
+    NamedRequirement{"lamp-drives", "drives", "median error", at_most(2.5)},
+    NamedRequirement{"lamp-drives", "drives", "95 % within", at_most(6.0)},
+    NamedRequirement{"lamp-drives", "four standpoints, height not known", "mean error", at_most(5.0)},
+    NamedRequirement{"section-5.4.2", "home, all known", "surface IoU", at_least(0.95)},
+    NamedRequirement{"section-5.4.2", "occlusion, all known", "surface IoU", at_least(0.95)},
+    NamedRequirement{"section-5.4.2", "people, all known", "surface IoU", at_least(0.95)},
+    NamedRequirement{"section-5.4.2", "all worlds pooled, estimated", "ball's shade covered", at_least(0.98)},
+    NamedRequirement{"section-5.4.2", "all worlds pooled, estimated", "area factor", at_most(1.4)},
+    NamedRequirement{"section-5.4.2", "home, cost, new_view", "worst", at_most(7.0)},
+    NamedRequirement{"section-5.4.2", "home, cost, nothing_moved", "worst", at_most(1.0)},
+    NamedRequirement{"shaded-ball", "with the mask", "overlap", at_least(0.85)},
+    NamedRequirement{"shaded-ball", "with the mask", "brown tracked", at_most(0.0)},
+    NamedRequirement{"section-5.4.3", "the run", "images", at_least(1821.0)},
+    NamedRequirement{"section-5.4.3", "with the mask", "overlap", at_least(0.85)},
+    NamedRequirement{"section-5.4.3", "brown ball", "tracked", at_most(0.0)},
+};
+
+}  // namespace
+
+std::span<const NamedRequirement> requirements() {
+  return kRequirements;
+}
+
+std::vector<NamedRequirement> requirements_of(std::string_view table) {
+  std::vector<NamedRequirement> all;
+  std::ranges::copy_if(kRequirements, std::back_inserter(all),
+                       [&](const NamedRequirement& required) { return required.table == table; });
+  return all;
+}
+
+}  // namespace cgsr::lab
