@@ -6,6 +6,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "pipeline/localization/work.h"
+
 namespace cgsr::localization {
 namespace {
 
@@ -78,13 +80,18 @@ bool Alternation::is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& m
   return std::sqrt(since.dot(metric * since)) > parameters_.max_view_shift_px;
 }
 
-void Alternation::look_if_far(const geometry::Pose& X_WC) {
-  if (parameters_.method == Method::kGlCorrect) {
-    view_.project(X_WC, camera_);
-    if (!is_far(X_WC, motion_metric(X_WC))) return;
-  }
+bool Alternation::must_look(const geometry::Pose& X_WC) {
+  if (parameters_.method != Method::kGlCorrect) return true;
+  view_.project(X_WC, camera_);
+  return is_far(X_WC, motion_metric(X_WC));
+}
+
+bool Alternation::look_if_far(const geometry::Pose& X_WC, WorkBudget& budget) {
+  if (!must_look(X_WC)) return true;
+  if (!granted(budget, kLookUnits)) return false;
   look(X_WC);
   view_.project(X_WC, camera_);
+  return true;
 }
 
 geometry::Matrix6d Alternation::motion_metric(const geometry::Pose& X_WC) const {
@@ -242,11 +249,16 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
   geometry::Pose X_WC = start;
   bool look_now = options.look_first;
   geometry::Matrix6d metric = geometry::Matrix6d::Zero();
-  for (int round = 0; round < options.rounds; ++round) {
-    if (!budget.grant()) break;
+  for (int round = 0; round < options.rounds_done; ++round)
+    rules.radius_px = std::max(least, rules.radius_px * kShrink);
+  for (int round = options.rounds_done; round < options.rounds; ++round) {
+    if (!granted(budget, kRoundUnits + (look_now ? kLookUnits : 0))) {
+      estimate.cut_off = true;
+      break;
+    }
     if (look_now) look(X_WC);
     view_.project(X_WC, camera_);
-    if (round == 0) metric = motion_metric(X_WC);
+    if (round == options.rounds_done) metric = motion_metric(X_WC);
     const auto matches = matcher_.match(view_.projected(), perceived, rules);
     gather(matches, perceived);
     Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
@@ -259,6 +271,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
       if (measured.solved) solution.X_WC = measured.X_WC;
     }
     ++estimate.rounds;
+    ++rounds_;
     estimate.expected = static_cast<int>(view_.projected().size());
     estimate.matches = static_cast<int>(matches.size());
     judge(matches, perceived, X_WC, estimate);

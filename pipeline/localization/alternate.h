@@ -45,6 +45,7 @@ struct Estimate {
   float agreement_in_the_worst = 0.0F;
   float prior_chi2 = 0.0F;
   int rounds = 0;
+  bool cut_off = false;  ///< the budget ended it before it settled.
 };
 
 /// From a belief as narrow as a followed pose's, what lies two pixels off is another edge rather than this one's error: SolverOptions::robust.
@@ -53,6 +54,7 @@ inline constexpr double kFollowedRobust = 0.7;
 /// How one alternation of expectation and maximisation goes. Pixels are those of the working image.
 struct AlternateOptions {
   int rounds = 6;
+  int rounds_done = 0;                     ///< of these, in an earlier image: the radius has shrunk as often.
   float radius_px = 24.0F;                 ///< of the first round.
   double robust = SolverOptions{}.robust;  ///< likewise there.
   bool look_first = true;                  ///< false: the pieces of the last look are good enough.
@@ -70,7 +72,7 @@ class Alternation {
   Alternation(const world::Map& map, const LocalizerParameters& parameters, render::Expectation& expectation,
               const geometry::Camera& camera, std::size_t most_perceived);
 
-  /// \param budget  asked before each round.
+  /// \param budget  asked before each round, and before each look at the map: kRoundUnits and kLookUnits.
   Estimate refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
                   const AlternateOptions& options, WorkBudget& budget);
 
@@ -78,15 +80,20 @@ class Alternation {
   void look(const geometry::Pose& X_WC);
   /// glCorrect projects what is known to be visible, and looks anew where the pose is farther than max_view_shift_px from where that was seen; the
   /// dissertation's methods look anew.
-  void look_if_far(const geometry::Pose& X_WC);
+  /// \return false when the budget does not hold the look.
+  bool look_if_far(const geometry::Pose& X_WC, WorkBudget& budget);
+  /// Whether look_if_far would look.
+  [[nodiscard]] bool must_look(const geometry::Pose& X_WC);
   void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }
   [[nodiscard]] const ExpectedView& view() const { return view_; }
 
   /// The square of the image's mean motion, px^2, for a step: step^T M step. From the pieces projected last; without any, from a wall 3 m away.
   [[nodiscard]] geometry::Matrix6d motion_metric(const geometry::Pose& X_WC) const;
 
+  /// Of work since reset_counts().
   [[nodiscard]] int looks() const { return looks_; }
-  void reset_looks() { looks_ = 0; }
+  [[nodiscard]] int rounds() const { return rounds_; }
+  void reset_counts() { looks_ = rounds_ = 0; }
 
  private:
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
@@ -112,6 +119,7 @@ class Alternation {
   std::optional<geometry::Pose> X_WC_looked_;  ///< where the last look was from.
   int corners_ = 0;                            ///< among them.
   int looks_ = 0;
+  int rounds_ = 0;
 };
 
 }  // namespace cgsr::localization

@@ -84,6 +84,7 @@ Estimate AlternativeHypothesis::better_than(const Estimate& followed, const Beli
   options.look_again = false;
   const geometry::Pose start = images_ > 0 ? X_WC_ : proposal(followed, metric);
   const Estimate beside = alternation_->refine(start, wider, perceived, options, budget);
+  if (beside.rounds == 0) return followed;  // not granted: it stands as it did
   const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
   const auto chi2 = static_cast<float>(off.dot(doubted.information * off));
   const float lead = beside.agreement - followed.agreement - kFarCounts * chi2;
@@ -96,12 +97,13 @@ Estimate AlternativeHypothesis::better_than(const Estimate& followed, const Beli
   ++images_;
   if (lead_ < 0.0F) forget();
   if (lead_ < kEnough || images_ < kLeastImages) return followed;
-  forget();
   options.rounds = parameters_.max_iterations;
   options.look_first = true;
   // The belief moves as a whole: it is as sure there as the doubted one was here.
   const Belief moved({beside.solution.X_WC, covariance});
   const Estimate better = alternation_->refine(beside.solution.X_WC, moved, perceived, options, budget);
+  if (better.rounds == 0) return followed;  // not granted: the next image decides
+  forget();
   return better.solved && better.agreement > followed.agreement ? better : followed;
 }
 

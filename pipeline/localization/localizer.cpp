@@ -1,7 +1,6 @@
 #include "pipeline/localization/localizer.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -11,8 +10,10 @@
 #include "pipeline/localization/alternative_hypothesis.h"
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/gate.h"
+#include "pipeline/localization/near_starts.h"
 #include "pipeline/localization/perceive.h"
 #include "pipeline/localization/search.h"
+#include "pipeline/localization/work.h"
 #include "pipeline/render/depth_raster.h"
 
 namespace cgsr::localization {
@@ -20,13 +21,8 @@ namespace {
 
 constexpr double kReachOfPrior = 2.5;  // sigmas of the prior that matching reaches from the prediction
 
-// Beside the prior's middle where its sigma moves the image more than a pose does that is followed: still one image's work.
+// Several starts where the prior's sigma moves the image more than a pose does that is followed.
 constexpr double kOneStart_px = 3.5;
-constexpr std::uint32_t kNearStarts = 8;
-constexpr double kNearSpread_px = 1.0;       // an axis of the prior that moves the image less needs no starts
-constexpr double kNearest = 1.8;             // sigmas
-constexpr double kNearAlternative_px = 4.0;  // a pose that is further off and as good leaves the answer open
-constexpr float kNearRadius = 0.6F;          // of the first start's
 
 // Shorter pieces are not matched (expected.cpp); a little of them may be longer from the pose that is found.
 constexpr double kLeastPiece_px = 5.0;
@@ -63,11 +59,20 @@ struct Localizer::State {
         perception(camera),
         expectation(given_expectation ? std::move(given_expectation) : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
+        near(alternation),
         search(parameters, alternation, perception.camera()),
         alternative(parameters, alternation) {}
 
-  /// \return nothing when the budget did not hold all the starts: without them nobody knows of a alternative hypothesis.
-  std::optional<Correction> from_near_starts(const Belief& belief, const PriorShape& shape, WorkBudget& budget);
+  /// Begins with a prior: looks at the map from its mean, and chooses how many starts it needs.
+  /// \return false when the budget does not hold the look.
+  bool begin(const Belief& belief, WorkBudget& budget);
+  /// From the prior's mean alone: one image's work.
+  Correction follow(const Belief& belief, WorkBudget& budget);
+  /// Goes on with what is under way. \return kSearching while it is.
+  Correction go_on(const Belief& belief, WorkBudget& budget);
+  [[nodiscard]] AlternateOptions options_of(const PriorShape& shape) const;
+  [[nodiscard]] bool searching() const { return near.running() || search.running(); }
+
   [[nodiscard]] Estimate settled(const Estimate& estimate, const Belief& belief);
   /// \param standing  none: the pose was followed, not searched for.
   void judge(const Estimate& estimate, const std::optional<Standing>& standing, Correction& answer) const;
@@ -77,8 +82,10 @@ struct Localizer::State {
   Perception perception;
   std::unique_ptr<render::Expectation> expectation;
   Alternation alternation;
+  NearStarts near;
   Search search;
   AlternativeHypothesis alternative;
+  AlternateOptions followed;  ///< how a pose is followed from the prior that begin() saw.
 };
 
 Localizer::Localizer(const world::Map& map, const geometry::Camera& camera, const LocalizerParameters& parameters,
@@ -89,6 +96,7 @@ Localizer::Localizer(Localizer&&) noexcept = default;
 Localizer& Localizer::operator=(Localizer&&) noexcept = default;
 
 void Localizer::carried(const geometry::Pose& X_C0C1) {
+  state_->near.carried(X_C0C1);
   state_->search.carried(X_C0C1);
   state_->alternative.carried(X_C0C1);
 }
@@ -98,12 +106,13 @@ geometry::Matrix6d Localizer::in_world(const geometry::Matrix6d& covariance) con
 }
 
 void Localizer::restart() {
+  state_->near.stop();
   state_->search.stop();
   state_->alternative.forget();
 }
 
 bool Localizer::searching() const {
-  return state_->search.running();
+  return state_->searching();
 }
 
 void Localizer::State::judge(const Estimate& estimate, const std::optional<Standing>& standing,
@@ -142,9 +151,7 @@ Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belie
   return better.solved ? better : estimate;
 }
 
-std::optional<Correction> Localizer::State::from_near_starts(const Belief& belief, const PriorShape& shape,
-                                                             WorkBudget& budget) {
-  Correction answer;
+AlternateOptions Localizer::State::options_of(const PriorShape& shape) const {
   AlternateOptions options;
   options.rounds = parameters.max_iterations;
   options.radius_px = static_cast<float>(std::clamp(kReachOfPrior * shape.widest_px() + 2.0,
@@ -153,45 +160,46 @@ std::optional<Correction> Localizer::State::from_near_starts(const Belief& belie
   const bool narrow = shape.widest_px() <= kOneStart_px;
   options.by_part = parameters.search && !narrow;
   if (narrow && parameters.method == Method::kGlCorrect) options.robust = kFollowedRobust;
-  Estimate best = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
+  return options;
+}
+
+bool Localizer::State::begin(const Belief& belief, WorkBudget& budget) {
+  if (!alternation.look_if_far(belief.prior.X_WC, budget)) return false;
+  const PriorShape shape = PriorShape::of(belief.prior.covariance, alternation.motion_metric(belief.prior.X_WC));
+  followed = options_of(shape);
+  if (!parameters.search || shape.widest_px() <= kOneStart_px) return true;
+  alternative.forget();
+  if (shape.widest_px() <= parameters.max_tracking_sigma_px) {
+    near.begin(belief, shape, followed);
+  } else {
+    search.begin(belief);
+  }
+  return true;
+}
+
+Correction Localizer::State::follow(const Belief& belief, WorkBudget& budget) {
+  Correction answer;
+  Estimate best = alternation.refine(belief.prior.X_WC, belief, perception.edges(), followed, budget);
   if (best.rounds == 0) {
     answer.reason = Reason::kNoBudget;
     return answer;
   }
-  if (!parameters.search || narrow) {
-    if (parameters.search && best.solved) best = alternative.better_than(best, belief, perception.edges(), budget);
-    judge(best, std::nullopt, answer);
+  if (parameters.search && best.solved) best = alternative.better_than(best, belief, perception.edges(), budget);
+  judge(best, std::nullopt, answer);
+  return answer;
+}
+
+Correction Localizer::State::go_on(const Belief& belief, WorkBudget& budget) {
+  Correction answer;
+  answer.reason = Reason::kSearching;
+  if (near.running()) {
+    if (near.go_on(belief, perception.edges(), budget))
+      judge(settled(near.best(), belief), Standing{.lead = near.lead(), .narrow = true}, answer);
     return answer;
   }
-  alternative.forget();
-  const geometry::Matrix6d metric = alternation.motion_metric(belief.prior.X_WC);
-  const auto rank = [](const Estimate& estimate) {
-    return estimate.solved ? evidence_of(estimate, Standing{}) : -10.0F;
-  };
-  std::array<Estimate, kNearStarts + 1> found;
-  found[0] = best;
-  options.look_first = true;
-  options.radius_px *= kNearRadius;
-  for (std::uint32_t start = 1; start <= kNearStarts; ++start) {
-    geometry::Vector6d step = geometry::Vector6d::Zero();
-    for (int i = 0; i < 6; ++i) {
-      if (shape.motion_px[i] >= kNearSpread_px)
-        step += std::clamp(even_normal(start, i), -kNearest, kNearest) * shape.axes.col(i);
-    }
-    found[start] =
-        alternation.refine(geometry::moved(belief.prior.X_WC, step), belief, perception.edges(), options, budget);
-    if (found[start].rounds == 0) return std::nullopt;
-    if (rank(found[start]) > rank(best)) best = found[start];
-  }
-  float lead = 1.0F;
-  for (const Estimate& other : found) {
-    if (!other.solved) continue;
-    const geometry::Vector6d step = geometry::step_between(best.solution.X_WC, other.solution.X_WC);
-    if (step.dot(metric * step) > kNearAlternative_px * kNearAlternative_px &&
-        !same_answer(best.solution.X_WC, other.solution.X_WC))
-      lead = std::min(lead, rank(best) - rank(other));
-  }
-  judge(settled(best, belief), Standing{.lead = lead, .narrow = true}, answer);
+  if (search.go_on(belief, perception.edges(), budget))
+    judge(settled(search.best(), belief), Standing{.lead = search.lead(), .cells = search.cells()}, answer);
+  answer.starts = search.starts();
   return answer;
 }
 
@@ -208,35 +216,17 @@ Correction Localizer::correct(const ImageView& image, const Prior& prior, WorkBu
     answer.looks = s.alternation.looks();
     return answer;
   };
-  s.alternation.reset_looks();
+  s.alternation.reset_counts();
   if (s.map->edges.empty()) return refused(Reason::kNoMap);
   const Reason seen = s.perception.perceive(image, mask);
   if (seen != Reason::kNone) return refused(seen);
   const Belief belief(prior);
   if (!belief.valid) return refused(Reason::kBadPrior);
 
-  if (!s.search.running()) {
-    if (!budget.grant()) return refused(Reason::kNoBudget);
-    s.alternation.look_if_far(prior.X_WC);
-    const PriorShape shape = PriorShape::of(prior.covariance, s.alternation.motion_metric(prior.X_WC));
-    std::optional<Correction> at_once;
-    if (!s.parameters.search || shape.widest_px() <= s.parameters.max_tracking_sigma_px)
-      at_once = s.from_near_starts(belief, shape, budget);
-    if (at_once) {
-      answer = *at_once;
-    } else {
-      s.alternative.forget();
-      s.search.begin(belief);
-    }
-  }
-  if (s.search.running()) {
-    if (s.search.go_on(belief, s.perception.edges(), budget)) {
-      s.judge(s.settled(s.search.best(), belief), Standing{.lead = s.search.lead(), .cells = s.search.cells()}, answer);
-    } else {
-      answer.reason = Reason::kSearching;
-    }
-    answer.starts = s.search.starts();
-  }
+  if (!s.searching() && !s.begin(belief, budget)) return refused(Reason::kNoBudget);
+  answer = s.searching() ? s.go_on(belief, budget) : s.follow(belief, budget);
+  if (answer.reason == Reason::kSearching && s.alternation.looks() + s.alternation.rounds() == 0)
+    return refused(Reason::kNoBudget);
   if (!answer.corrected) {
     answer.X_WC = prior.X_WC;
     answer.covariance = prior.covariance;

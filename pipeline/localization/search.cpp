@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "pipeline/localization/gate.h"
+#include "pipeline/localization/work.h"
 
 namespace cgsr::localization {
 namespace {
@@ -48,21 +49,6 @@ double normal_quantile(double p) {
          (((((b[0] * r + b[1]) * r + b[2]) * r + b[3]) * r + b[4]) * r + 1.0);
 }
 
-// Passes grants on, and knows whether one was refused.
-class WatchedBudget final : public WorkBudget {
- public:
-  explicit WatchedBudget(WorkBudget& budget) : budget_(&budget) {}
-  bool grant() override {
-    refused_ = refused_ || !budget_->grant();
-    return !refused_;
-  }
-  [[nodiscard]] bool refused() const { return refused_; }
-
- private:
-  WorkBudget* budget_;
-  bool refused_ = false;
-};
-
 }  // namespace
 
 double even_normal(std::uint32_t index, int dimension) {
@@ -90,7 +76,10 @@ PriorShape PriorShape::of(const Matrix6d& covariance, const Matrix6d& motion_met
 }
 
 Search::Search(const LocalizerParameters& parameters, Alternation& alternation, const geometry::Camera& camera)
-    : parameters_(parameters), alternation_(&alternation), field_(camera.width_px, camera.height_px) {
+    : parameters_(parameters),
+      alternation_(&alternation),
+      refinement_(alternation),
+      field_(camera.width_px, camera.height_px) {
   finalists_.reserve(static_cast<std::size_t>(parameters.finalists) + 1);
   estimates_.reserve(kKept + 1);
 }
@@ -106,7 +95,7 @@ double Search::motion_between(const Pose& a, const Pose& b) const {
 
 void Search::begin(const Belief& belief) {
   sequence_ += start_count_;
-  alternation_->look_if_far(belief.prior.X_WC);
+  refinement_.stop();
   metric_ = alternation_->motion_metric(belief.prior.X_WC);
   shape_ = PriorShape::of(belief.prior.covariance, metric_);
   cells_ = 1.0;
@@ -119,8 +108,10 @@ void Search::begin(const Belief& belief) {
   next_start_ = 0;
   next_finalist_ = 0;
   next_neighbour_ = 0;
+  next_judged_ = 0;
   walk_ = 0;
   improved_ = false;
+  field_built_ = false;
   X_WC_began_ = belief.prior.X_WC;
   finalists_.clear();
   estimates_.clear();
@@ -132,14 +123,17 @@ void Search::begin(const Belief& belief) {
 void Search::carried(const Pose& X_C0C1) {
   if (!running()) return;
   X_WC_began_ = X_WC_began_ * X_C0C1;
+  X_C0C1_since_field_ = X_C0C1_since_field_ * X_C0C1;
   X_WC_walk_ = X_WC_walk_ * X_C0C1;
   for (Candidate& candidate : finalists_) candidate.X_WC = candidate.X_WC * X_C0C1;
   for (Estimate& estimate : estimates_) estimate.solution.X_WC = estimate.solution.X_WC * X_C0C1;
+  for (Estimate& estimate : judged_) estimate.solution.X_WC = estimate.solution.X_WC * X_C0C1;
+  refinement_.carried(X_C0C1);
 }
 
 bool Search::try_starts(const Belief& belief, WorkBudget& budget, int& units) {
   while (next_start_ < start_count_) {
-    if (units <= 0 || !budget.grant()) return false;
+    if (units <= 0 || !granted(budget, kLookUnits + kRoundUnits)) return false;
     --units;
     Vector6d step = Vector6d::Zero();
     if (next_start_ > 0) {
@@ -151,8 +145,9 @@ bool Search::try_starts(const Belief& belief, WorkBudget& budget, int& units) {
     }
     ++next_start_;
     Candidate candidate{.X_WC = geometry::moved(X_WC_began_, step)};
-    alternation_->look(candidate.X_WC);
-    alternation_->project(candidate.X_WC);
+    const Pose X_WC_then = candidate.X_WC * X_C0C1_since_field_.inverse();
+    alternation_->look(X_WC_then);
+    alternation_->project(X_WC_then);
     const Vector6d off = geometry::step_between(belief.prior.X_WC, candidate.X_WC);
     candidate.score = field_.score(alternation_->view().projected()) -
                       kStartPrior * static_cast<float>(off.dot(belief.information * off));
@@ -178,28 +173,29 @@ void Search::keep(const Estimate& estimate) {
   if (estimates_.size() > kKept) estimates_.pop_back();
 }
 
-// What the rest of an image's budget does not hold waits for the next image's; what a whole one does not hold is taken as far as it came.
-std::optional<Estimate> Search::refined(const Pose& start, const Belief& belief, const SegmentTable& perceived,
-                                        const AlternateOptions& options, WorkBudget& budget) {
-  WatchedBudget watched(budget);
-  Estimate estimate = alternation_->refine(start, belief, perceived, options, watched);
-  if (watched.refused() && (!budget_is_whole_ || estimate.rounds == 0)) return std::nullopt;
-  budget_is_whole_ = false;
-  return estimate;
-}
-
 bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   const AlternateOptions options{.rounds = parameters_.max_iterations,
                                  .radius_px = static_cast<float>(parameters_.max_match_radius_px)};
   while (next_finalist_ < finalists_.size()) {
     if (units <= 0) return false;
     units -= kFinalistUnits;
-    const auto estimate = refined(finalists_[next_finalist_].X_WC, belief, perceived, options, budget);
+    const auto estimate = refinement_.refine(finalists_[next_finalist_].X_WC, belief, perceived, options, budget);
     if (!estimate) return false;
     ++next_finalist_;
     keep(*estimate);
   }
   return true;
+}
+
+Pose Search::neighbour() const {
+  Vector6d step = Vector6d::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (shape_.motion_px[i] < kNeighbourSpread_px) continue;
+    const double most = std::min(1.5, parameters_.hypothesis_spacing_px / shape_.motion_px[i]);
+    const std::uint32_t number = static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
+    step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
+  }
+  return geometry::moved(X_WC_walk_, step);
 }
 
 bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
@@ -214,14 +210,7 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
     while (next_neighbour_ < static_cast<std::uint32_t>(parameters_.neighbours)) {
       if (units <= 0) return false;
       units -= 1;
-      Vector6d step = Vector6d::Zero();
-      for (int i = 0; i < 6; ++i) {
-        if (shape_.motion_px[i] < kNeighbourSpread_px) continue;
-        const double most = std::min(1.5, parameters_.hypothesis_spacing_px / shape_.motion_px[i]);
-        const std::uint32_t number = static_cast<std::uint32_t>(walk_ * parameters_.neighbours) + next_neighbour_;
-        step += most * std::clamp(even_normal(number, i), -kFarthest, kFarthest) * shape_.axes.col(i);
-      }
-      const auto estimate = refined(geometry::moved(X_WC_walk_, step), belief, perceived, options, budget);
+      const auto estimate = refinement_.refine(neighbour(), belief, perceived, options, budget);
       if (!estimate) return false;
       ++next_neighbour_;
       const float before = rank_of(estimates_.front());
@@ -237,37 +226,46 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
   return true;
 }
 
-// On the image at hand: the last word between the best and those that come next.
-void Search::verdict(const Belief& belief, const SegmentTable& perceived) {
+// The best and those that come next, refined with the gate's figures: the last word is between them.
+bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
   const AlternateOptions options{.rounds = parameters_.max_iterations,
                                  .radius_px = static_cast<float>(2.0 * parameters_.min_match_radius_px),
                                  .by_part = true};
-  UnlimitedBudget whole;
+  while (next_judged_ < std::min(kJudged, estimates_.size())) {
+    const auto estimate =
+        refinement_.refine(estimates_[next_judged_].solution.X_WC, belief, perceived, options, budget);
+    if (!estimate) return false;
+    judged_[next_judged_++] = *estimate;
+  }
+  return granted(budget, kLookUnits + kRoundUnits);  // for who settles the best one
+}
+
+void Search::verdict() {
   best_ = Estimate{};
   lead_ = 1.0F;
-  if (estimates_.empty()) return;
-  constexpr std::size_t kJudged = 5;
-  std::array<Estimate, kJudged> judged;
-  const std::size_t count = std::min(kJudged, estimates_.size());
-  for (std::size_t i = 0; i < count; ++i)
-    judged[i] = alternation_->refine(estimates_[i].solution.X_WC, belief, perceived, options, whole);
-  std::sort(judged.begin(), judged.begin() + static_cast<std::ptrdiff_t>(count),
+  const std::size_t count = next_judged_;
+  if (count == 0) return;
+  std::sort(judged_.begin(), judged_.begin() + static_cast<std::ptrdiff_t>(count),
             [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
-  best_ = judged[0];
+  best_ = judged_[0];
   for (std::size_t i = 1; i < count; ++i) {
-    if (motion_between(best_.solution.X_WC, judged[i].solution.X_WC) <= kAlternative_px ||
-        same_answer(best_.solution.X_WC, judged[i].solution.X_WC))
+    if (motion_between(best_.solution.X_WC, judged_[i].solution.X_WC) <= kAlternative_px ||
+        same_answer(best_.solution.X_WC, judged_[i].solution.X_WC))
       continue;
-    lead_ = std::min(lead_, rank_of(best_) - rank_of(judged[i]));
+    lead_ = std::min(lead_, rank_of(best_) - rank_of(judged_[i]));
     break;
   }
 }
 
 bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
   int units = parameters_.hypotheses_per_image > 0 ? parameters_.hypotheses_per_image : 1 << 30;
-  budget_is_whole_ = stage_ != Stage::kStarts;
   if (stage_ == Stage::kStarts) {
-    field_.build(perceived);
+    if (!field_built_) {
+      if (!granted(budget, kFieldUnits)) return false;
+      field_.build(perceived);
+      field_built_ = true;
+      X_C0C1_since_field_ = Pose::Identity();
+    }
     if (!try_starts(belief, budget, units)) return false;
     stage_ = Stage::kFinalists;
   }
@@ -277,7 +275,11 @@ bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudg
   }
   if (stage_ == Stage::kNeighbours) {
     if (!try_neighbours(belief, perceived, budget, units)) return false;
-    verdict(belief, perceived);
+    stage_ = Stage::kVerdict;
+  }
+  if (stage_ == Stage::kVerdict) {
+    if (!judge_best(belief, perceived, budget)) return false;
+    verdict();
     stage_ = Stage::kIdle;
   }
   return true;

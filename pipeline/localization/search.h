@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "pipeline/localization/alternate.h"
 #include "pipeline/localization/direction_field.h"
 #include "pipeline/localization/localizer_parameters.h"
+#include "pipeline/localization/refinement.h"
 
 namespace cgsr::localization {
 
@@ -36,7 +39,8 @@ class Search {
   void stop() { stage_ = Stage::kIdle; }
   [[nodiscard]] bool running() const { return stage_ != Stage::kIdle; }
 
-  /// Works on one image as far as the budget goes. \return whether the search came to its end: best() and lead() hold.
+  /// Works on one image as far as the budget goes; what it cuts off goes on in the next image. \return whether the search came to its end: best()
+  /// and lead() hold, and the look and the round that settle the best pose are granted.
   bool go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget);
 
   void carried(const geometry::Pose& X_C0C1);
@@ -48,43 +52,48 @@ class Search {
   [[nodiscard]] int starts() const { return static_cast<int>(next_start_); }
 
  private:
-  enum class Stage : std::uint8_t { kIdle, kStarts, kFinalists, kNeighbours };
+  enum class Stage : std::uint8_t { kIdle, kStarts, kFinalists, kNeighbours, kVerdict };
+  static constexpr std::size_t kJudged = 5;  ///< poses that are compared at the end.
   struct Candidate {
     geometry::Pose X_WC = geometry::Pose::Identity();
     float score = 0.0F;
   };
 
-  std::optional<Estimate> refined(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
-                                  const AlternateOptions& options, WorkBudget& budget);
   bool try_starts(const Belief& belief, WorkBudget& budget, int& units);
   bool refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
   bool try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
-  void verdict(const Belief& belief, const SegmentTable& perceived);
+  [[nodiscard]] geometry::Pose neighbour() const;
+  bool judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget);
+  void verdict();
   void keep(const Estimate& estimate);
   [[nodiscard]] double motion_between(const geometry::Pose& a, const geometry::Pose& b) const;
   static float rank_of(const Estimate& estimate);
 
   LocalizerParameters parameters_;
   Alternation* alternation_;
+  Refinement refinement_;
   DirectionField field_;
   geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
   PriorShape shape_;
   geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
   geometry::Pose X_WC_began_ = geometry::Pose::Identity();
+  geometry::Pose X_C0C1_since_field_ = geometry::Pose::Identity();  ///< since the image that starts are scored in.
   Estimate best_;
   std::vector<Candidate> finalists_;  ///< best first.
   std::vector<Estimate> estimates_;   ///< distinct, best first.
+  std::array<Estimate, kJudged> judged_;
   double cells_ = 1.0;
   std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
   std::uint32_t start_count_ = 0;
   std::uint32_t next_start_ = 0;
   std::uint32_t next_finalist_ = 0;
   std::uint32_t next_neighbour_ = 0;
+  std::size_t next_judged_ = 0;
   int walk_ = 0;
   float lead_ = 0.0F;
   Stage stage_ = Stage::kIdle;
   bool improved_ = false;
-  bool budget_is_whole_ = false;  ///< nothing of this image's was spent on the search yet.
+  bool field_built_ = false;
 };
 
 }  // namespace cgsr::localization

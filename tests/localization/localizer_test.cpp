@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "pipeline/localization/work.h"
 #include "tests/localization/random_numbers.h"
 #include "tests/localization/small_room.h"
 #include "tests/support/allocation_guard.h"
@@ -192,8 +193,7 @@ TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
   const geometry::Camera camera = room_camera();
   const Pose truth = in_small_room(1.0, 1.6, 0.2);
   const Picture picture(map, truth, camera, 1.5, 1);
-  constexpr int kUngranted = 7;  // the search's first one, and those of its verdict
-  for (const int units : {1, 3, 8, 20}) {
+  for (const int units : {1, 3, 8, 20, 60}) {
     for (const double scale : {0.3, 1.0, 3.0}) {
       LocalizerParameters parameters;
       parameters.hypotheses_per_image = 0;
@@ -202,7 +202,7 @@ TEST(LocalizerProperty, AnImageLooksNoMoreOftenThanItIsGranted) {
         CountedBudget budget(units);
         const Correction answer =
             localizer.correct(picture.view(), prior_at(truth, PriorSigmas::floor().times(scale)), budget);
-        EXPECT_LE(answer.looks, units + kUngranted);
+        EXPECT_LE(answer.looks * kLookUnits, units);
       }
     }
   }
@@ -238,25 +238,54 @@ TEST(Localizer, APriorThatNeedsMoreStartsThanTheBudgetHoldsIsSearchedOverImages)
   const Pose truth = in_small_room(1.0, 1.6, 0.2);
   const Picture picture(map, truth, camera, 1.5, 4);
   const PriorSigmas wider{.x_m = 0.02, .y_m = 0.02, .z_m = 0.005, .heading_rad = 0.015, .tilt_rad = 0.004};
-  for (const int units : {4, 9, 1000}) {
+  for (const int units : {kLookUnits + kRoundUnits, 20, 1000}) {
     Localizer localizer(map, camera, {});
-    CountedBudget budget(units);
-    const Correction first = localizer.correct(picture.view(), prior_at(truth, wider), budget);
-    EXPECT_EQ(first.reason, units < 1000 ? Reason::kSearching : Reason::kNone) << units;
+    Correction answer{.reason = Reason::kSearching};
+    int images = 0;
+    for (; answer.reason == Reason::kSearching && images < 100; ++images) {
+      CountedBudget budget(units);
+      answer = localizer.correct(picture.view(), prior_at(truth, wider), budget);
+    }
+    EXPECT_EQ(answer.reason, Reason::kNone) << units;
+    EXPECT_LT(error_of(truth, answer.X_WC).position_m, 0.02) << units;
+    if (units < 1000) {
+      EXPECT_GT(images, 3);
+    } else {
+      EXPECT_EQ(images, 1);
+    }
   }
 }
 
-// However little an image is granted, a search comes to its end.
+// An image that is granted nothing says so, and leaves what is under way as it is.
+TEST(Localizer, AnImageWithoutWorkIsNotCorrectedForWantOfBudget) {
+  const world::Map map = small_room();
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, room_camera(), 1.5, 1);
+  for (const double scale : {0.05, 1.0}) {
+    Localizer localizer(map, room_camera(), {});
+    const Prior prior = prior_at(truth, PriorSigmas::floor().times(scale));
+    const auto reason_with = [&](int units) {
+      CountedBudget budget(units);
+      return localizer.correct(picture.view(), prior, budget).reason;
+    };
+    EXPECT_EQ(reason_with(0), Reason::kNoBudget) << scale;
+    EXPECT_EQ(reason_with(kLookUnits - 1), Reason::kNoBudget) << scale << ": not even the first look";
+    EXPECT_NE(reason_with(kMinSearchUnits + kLookUnits), Reason::kNoBudget) << scale;
+    EXPECT_EQ(reason_with(0), Reason::kNoBudget) << scale << ", under way";
+  }
+}
+
+// However little an image is granted, a search comes to its end: from kMinSearchUnits on.
 TEST(LocalizerProperty, ASearchEndsWhateverItIsGranted) {
   const world::Map map = small_room();
   const geometry::Camera camera = room_camera();
   const Pose truth = in_small_room(1.0, 1.6, 0.2);
   const Picture picture(map, truth, camera, 1.5, 1);
-  for (const int units : {1, 2, 4, 7}) {
+  for (const int units : {kMinSearchUnits, kMinSearchUnits + 1, 24}) {
     Localizer localizer(map, camera, {});
     int images = 0;
     Reason reason = Reason::kSearching;
-    for (; reason == Reason::kSearching && images < 2000; ++images) {
+    for (; reason == Reason::kSearching && images < 4000; ++images) {
       CountedBudget budget(units);
       reason = localizer.correct(picture.view(), prior_at(truth, PriorSigmas::floor()), budget).reason;
     }
