@@ -29,4 +29,16 @@ struct FrameResult {
   runtime::Aged<Decision> decision;
 };
 
+/// Shows every described output of a frame to a reader: the one list from which CSV, summary, overlay, recording and digests are made.
+/// A new output is appended: the columns and topics of the others stay where they are.
+/// \param read  called with name (topic and key), meaning, and the Aged output.
+template <class Frame, class Read>
+void for_each_output(Frame& frame, Read read) {
+  read("objects", "The tracked object.", frame.objects);
+  read("decision", "What the task decided.", frame.decision);
+  read("pose", "The estimated pose.", frame.pose);
+  read("lamp", "What the probes say of the lamp.", frame.lamp);
+  read("shade", "The state of the shadow masks.", frame.shade);
+}
+
 }  // namespace cgsr::stages

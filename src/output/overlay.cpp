@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kStripeHeight_px = 22;
 constexpr int kLineHeight_px = 20;
-constexpr int kMaxLines = 4;
+constexpr int kMaxLines = 5;
 constexpr int kPanelHeight_px = kStripeHeight_px + (kMaxLines + 1) * kLineHeight_px + 10;
 constexpr int kColumn_px = 3;  // width of one image's light in the stripe
 const cv::Scalar kPanel(32, 28, 26);

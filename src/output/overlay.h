@@ -23,7 +23,7 @@ struct OverlayFacts {
   double divergence = 0.0;
   const render::ShadeMasks* shade =
       nullptr;                     ///< what may lie in shadow: tinted, and outlined where the surface itself does.
-  std::vector<std::string> lines;  ///< free text below the image, one line each; at most four are drawn.
+  std::vector<std::string> lines;  ///< free text below the image, one line each; at most five are drawn.
 };
 
 /// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3)

@@ -8,14 +8,14 @@
 
 namespace cgsr::sinks {
 
-/// \return the names of the columns of image_row, joined by commas.
-std::string image_row_header();
+/// \return the names of the columns of a file, joined by commas: those of image_row, and those of the truth in their place.
+std::string csv_file_header();
 
-/// One image as a row: number and stamp, then the described fields of the stages' outputs and of the motion loop.
+/// One image as a row, without truth: number and stamp, then the described fields of the stages' outputs and of the motion loop.
 /// New columns are appended, never inserted. What does not exist now is empty.
 std::string image_row(const ImageReport& report);
 
-/// A row for every image, with the judge's columns behind it.
+/// A row for every image, with the columns of the truth.
 class CsvSink final : public Sink {
  public:
   /// \param truth  of the image at hand; null: nobody knows it, and its columns stay empty. Outlives the sink.

@@ -10,30 +10,31 @@
 namespace cgsr::sinks {
 namespace {
 
-// The index of each topic, in the order of channels().
-enum Topic : std::size_t { kObjects, kDecision, kMotion, kPose, kLamp, kShade, kImage };
-
 template <class Output>
 McapChannel channel_of(const std::string& name, std::string_view meaning) {
   return json_channel("/cgsr/" + name, "cgsr/" + name, json_schema<Output>("cgsr/" + name, meaning));
 }
 
+/// The outputs in their order, then motion, then the images.
 std::vector<McapChannel> channels() {
-  return {channel_of<stages::TrackedObjects>("objects", "The tracked object."),
-          channel_of<stages::Decision>("decision", "What the task decided."),
-          channel_of<MotionStatus>("motion", "A cycle of the motion loop."),
-          channel_of<stages::PoseEstimate>("pose", "The estimated pose."),
-          channel_of<stages::LampReport>("lamp", "What the probes say of the lamp."),
-          channel_of<stages::ShadowMasks>("shade", "The state of the shadow masks."),
-          compressed_image_channel("/camera/image/compressed")};
+  std::vector<McapChannel> all;
+  const stages::FrameResult frame;
+  stages::for_each_output(frame, [&all](std::string_view name, std::string_view meaning, const auto& output) {
+    all.push_back(channel_of<std::remove_cvref_t<decltype(output.value)>>(std::string(name), meaning));
+  });
+  all.push_back(channel_of<MotionStatus>("motion", "A cycle of the motion loop."));
+  all.push_back(compressed_image_channel("/camera/image/compressed"));
+  return all;
 }
 
 }  // namespace
 
 Result<std::unique_ptr<RecordingSink>> RecordingSink::create(const std::string& path) {
-  auto recorder = Recorder::create(path, channels());
+  std::vector<McapChannel> all = channels();
+  const std::size_t count = all.size();
+  auto recorder = Recorder::create(path, std::move(all));
   if (!recorder) return tl::unexpected(recorder.error());
-  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder)));
+  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder), count - 2, count - 1));
 }
 
 template <class Output>
@@ -45,17 +46,16 @@ void RecordingSink::post(std::size_t channel, MonoTime stamp, const Output& outp
 
 Result<void> RecordingSink::on_image(const ImageReport& report) {
   const MonoTime stamp = report.record.stamp;
-  post(kObjects, stamp, report.frame.objects.value);
-  post(kDecision, stamp, report.frame.decision.value);
-  post(kPose, stamp, report.frame.pose.value);
-  post(kLamp, stamp, report.frame.lamp.value);
-  post(kShade, stamp, report.frame.shade.value);
-  if (report.picture != nullptr) recorder_->post(kImage, stamp, report.picture->image.view());
+  std::size_t channel = 0;
+  stages::for_each_output(report.frame, [&](std::string_view, std::string_view, const auto& output) {
+    post(channel++, stamp, output.value);
+  });
+  if (report.picture != nullptr) recorder_->post(image_, stamp, report.picture->image.view());
   return recorder_->step();
 }
 
 Result<void> RecordingSink::on_control_cycle(const MotionStatus& status) {
-  post(kMotion, status.stamp, status);
+  post(motion_, status.stamp, status);
   return {};
 }
 

@@ -20,12 +20,15 @@ class RecordingSink final : public Sink {
   void summarize(Summary& summary) override;
 
  private:
-  explicit RecordingSink(std::unique_ptr<Recorder> recorder) : recorder_(std::move(recorder)) {}
+  RecordingSink(std::unique_ptr<Recorder> recorder, std::size_t motion, std::size_t image)
+      : recorder_(std::move(recorder)), motion_(motion), image_(image) {}
 
   template <class Output>
   void post(std::size_t channel, MonoTime stamp, const Output& output);
 
   std::unique_ptr<Recorder> recorder_;
+  std::size_t motion_;  // their channels; those of the outputs are their places in the list
+  std::size_t image_;
   std::string message_;
 };
 

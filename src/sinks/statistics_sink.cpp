@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "platform/description/json.h"
 #include "src/sinks/statistics_summary.h"
 
 namespace cgsr::sinks {
@@ -25,7 +26,20 @@ Result<void> StatisticsSink::on_image(const ImageReport& report) {
         {decision.state, decision.reason, report.record.image_sequence, seconds_of(report.record.stamp)});
   }
   count_lamp(report);
+  count_outputs(report);
   return {};
+}
+
+void StatisticsSink::count_outputs(const ImageReport& report) {
+  std::size_t place = 0;
+  stages::for_each_output(report.frame, [&](std::string_view name, std::string_view, const auto& output) {
+    if (place == run_.outputs.size()) run_.outputs.push_back({name, 0, ""});
+    OutputStatistics& statistics = run_.outputs[place++];
+    if (!output.fresh()) return;
+    ++statistics.updates;
+    statistics.last.clear();
+    append_json(statistics.last, output.value);
+  });
 }
 
 void StatisticsSink::count_lamp(const ImageReport& report) {

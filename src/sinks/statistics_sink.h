@@ -37,6 +37,13 @@ struct LampStatistics {
   std::optional<illumination::KnownLamp> last;           ///< the last lamp that was known.
 };
 
+/// What a described output came to.
+struct OutputStatistics {
+  std::string_view name;
+  std::uint64_t updates = 0;  ///< images in which its stage gave a new one.
+  std::string last;           ///< the last one, as JSON.
+};
+
 /// What a run came to.
 struct RunStatistics {
   std::uint64_t frames = 0;
@@ -49,9 +56,10 @@ struct RunStatistics {
   MotionStatus last_motion;
   stages::PoseEstimate last_pose;
   LampStatistics lamp;
-  std::vector<TaskStep> task;            ///< in order.
-  std::vector<SwitchRecord> switchings;  ///< of lamps, in order.
-  std::vector<CheckEnd> checks;          ///< by switching, in order.
+  std::vector<TaskStep> task;             ///< in order.
+  std::vector<SwitchRecord> switchings;   ///< of lamps, in order.
+  std::vector<CheckEnd> checks;           ///< by switching, in order.
+  std::vector<OutputStatistics> outputs;  ///< in the order of for_each_output.
 };
 
 /// Counts what happened in a run, and what each stage took.
@@ -69,6 +77,7 @@ class StatisticsSink final : public Sink {
   [[nodiscard]] const runtime::StageTable& table() const { return table_; }
 
  private:
+  void count_outputs(const ImageReport& report);
   void count_lamp(const ImageReport& report);
   void count_check(const ImageReport& report, illumination::CheckedLamp lamp, const illumination::CheckReport& check);
 

@@ -110,6 +110,15 @@ void add_switches(const RunStatistics& run, Summary& summary) {
   summary.json["switches"] = std::move(json);
 }
 
+Json outputs_json(const RunStatistics& run) {
+  Json outputs = Json::object();
+  for (const OutputStatistics& output : run.outputs) {
+    outputs[std::string(output.name)] = {{"updates", output.updates},
+                                         {"last", output.last.empty() ? Json() : Json::parse(output.last)}};
+  }
+  return outputs;
+}
+
 }  // namespace
 
 void add_run_statistics(const RunStatistics& run, const runtime::StageTable& table, Summary& summary) {
@@ -123,6 +132,7 @@ void add_run_statistics(const RunStatistics& run, const runtime::StageTable& tab
   add_task(run, summary);
   add_lamp(run.lamp, summary);
   add_switches(run, summary);
+  summary.json["outputs"] = outputs_json(run);
   summary.json["stages"] = stages_json(table);
   summary.text += runtime::to_text(table);
 }

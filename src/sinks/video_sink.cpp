@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "platform/description/text.h"
+
 namespace cgsr::sinks {
 namespace {
 
@@ -33,6 +35,37 @@ std::string lamp_line(const stages::LampReport& lamp, const stages::ShadowMasks&
   return line + fmt::format("shadow masks: {}", to_string(shade.status));
 }
 
+// The outputs that are drawn, or whose line says more than their description. Any other one is written as described.
+
+std::string line_of(std::string_view, const ImageReport&, const runtime::Aged<stages::TrackedObjects>&) {
+  return "";  // its box and light are drawn
+}
+
+std::string line_of(std::string_view, const ImageReport& report, const runtime::Aged<stages::Decision>&) {
+  return task_line(report);
+}
+
+std::string line_of(std::string_view, const ImageReport&, const runtime::Aged<stages::PoseEstimate>& pose) {
+  return pose.value.has_map ? pose_line(pose.value) : "";
+}
+
+std::string line_of(std::string_view, const ImageReport& report, const runtime::Aged<stages::LampReport>& lamp) {
+  return lamp.value.has_board ? lamp_line(lamp.value, report.frame.shade.value) : "";
+}
+
+std::string line_of(std::string_view, const ImageReport&, const runtime::Aged<stages::ShadowMasks>&) {
+  return "";  // drawn, and in the lamp's line
+}
+
+template <class Output>
+std::string line_of(std::string_view name, const ImageReport&, const runtime::Aged<Output>& output) {
+  if (!output.ever()) return "";
+  std::string line(name);
+  line += ": ";
+  append_text(line, output.value);
+  return line;
+}
+
 std::string stage_times(const runtime::FrameRecord& record, const runtime::Schedule& schedule) {
   std::string line = "stages, us:";
   for (std::size_t i = 0; i < schedule.rows().size(); ++i) {
@@ -45,10 +78,11 @@ std::string stage_times(const runtime::FrameRecord& record, const runtime::Sched
 }  // namespace
 
 std::vector<std::string> overlay_lines(const ImageReport& report, const runtime::Schedule& schedule) {
-  std::vector<std::string> lines{task_line(report)};
-  const stages::FrameResult& frame = report.frame;
-  if (frame.pose.value.has_map) lines.push_back(pose_line(frame.pose.value));
-  if (frame.lamp.value.has_board) lines.push_back(lamp_line(frame.lamp.value, frame.shade.value));
+  std::vector<std::string> lines;
+  stages::for_each_output(report.frame, [&](std::string_view name, std::string_view, const auto& output) {
+    std::string line = line_of(name, report, output);
+    if (!line.empty()) lines.push_back(std::move(line));
+  });
   lines.push_back(stage_times(report.record, schedule));
   return lines;
 }

@@ -39,7 +39,7 @@ class VideoSink final : public Sink {
   cv::Mat side_by_side_;
 };
 
-/// \return the lines below an overlay: what the task does, and one line for each stage that has something to say.
+/// \return the lines below an overlay: one line for each output that has something to say, last what the stages took.
 std::vector<std::string> overlay_lines(const ImageReport& report, const runtime::Schedule& schedule);
 
 }  // namespace cgsr::sinks

@@ -15,6 +15,7 @@
 #include "platform/description/digest.h"
 #include "platform/description/json.h"
 #include "platform/description/markdown.h"
+#include "platform/description/text.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cgsr {
@@ -114,6 +115,18 @@ TEST(Description, JsonParsesAndBringsTheSameNumbersBack) {
   EXPECT_EQ(object["lamp"], (nlohmann::json{{"x_m", -2.0}}));
   ASSERT_EQ(object["balls"].size(), 2u);
   EXPECT_EQ(object["balls"][1]["sigma_m"], 0.25);
+}
+
+TEST(Description, OneLineForPeopleNamesValuesAndUnits) {
+  std::string line;
+  append_text(line, full());
+  EXPECT_EQ(
+      line,
+      "found yes, width_px 12.2 px, image 7, shade possibly shaded, note red, \"big\", x_m 0.333 m, sigma_m 0.50 m, "
+      "x_m -2.000 m, balls 2");
+  line.clear();
+  append_text(line, Place{});
+  EXPECT_EQ(line, "x_m 0.000 m") << "what is not there is left out";
 }
 
 TEST(Description, TextThatIsNotUtf8BecomesValidJson) {
