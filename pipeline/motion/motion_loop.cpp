@@ -90,7 +90,10 @@ MotionStatus MotionLoop::step(MonoTime now, const MotionInputs& inputs) {
 
   status.stamp = now;
   status.odometry = odometry_;
-  if (goal_) status.goal = goal_->twist;
+  if (goal_) {
+    status.goal = goal_->twist;
+    status.goal_stamp = goal_->stamp;
+  }
   status.commanded = commanded_;
   status.armed = armed_;
   status.drive_fault = drive_fault();

@@ -82,7 +82,7 @@ class LiveLoops {
     Periodic round(clock_, kHousekeepingPeriod);
     while (!stop_.requested()) {
       round.wait();
-      housekeeping_.step();
+      housekeeping_.step(clock_.now());
     }
   }
 
@@ -156,7 +156,7 @@ Result<void> run_live(RobotState& state, StopRequest& stop) {
   Result<void> outcome = camera_outcome(state);
   state.devices.camera->stop();
   threads.stop_and_join();
-  housekeeping.step();
+  housekeeping.step(clock.now());
   return outcome;
 }
 

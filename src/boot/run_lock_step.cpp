@@ -72,7 +72,7 @@ Result<void> run_lock_step(RobotState& state, StopRequest& stop) {
     cycles.advance_to(due);
     if (!capture.step(due)) break;
     if (!vision.step()) vision.step_without_image(due);
-    housekeeping.step();
+    housekeeping.step(due);
     const sinks::RunStatistics& so_far = state.outputs.statistics->run();
     progress.show(fmt::format("{:.1f} s   {} images, object in {}   {:+.2f} m/s", to_seconds(due.time_since_epoch()),
                               so_far.frames, so_far.found, so_far.last_motion.commanded.forward_mps));
@@ -84,7 +84,7 @@ Result<void> run_lock_step(RobotState& state, StopRequest& stop) {
   stop.request();
   cycles.advance_to(cycles.last() + 2 * kMotionPeriod);
   motion.end();
-  housekeeping.step();
+  housekeeping.step(stamps.now());
   return camera_outcome(state);
 }
 

@@ -16,6 +16,7 @@ struct ImageReport {
   const runtime::FrameRecord& record;
   const MotionStatus& motion;  ///< of the last control cycle before.
   const Picture* picture;      ///< null: it found no room on its way here.
+  MonoTime taken_at{};         ///< when housekeeping took it out of its ring.
 };
 
 /// What a run came to.

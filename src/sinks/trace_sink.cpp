@@ -1,13 +1,17 @@
 #include "src/sinks/trace_sink.h"
 
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 namespace cgsr::sinks {
 namespace {
 
-constexpr int kVision = 1;
-constexpr int kMotion = 2;
+constexpr int kCapture = 1;
+constexpr int kVision = 2;
+constexpr int kMotion = 3;
+constexpr int kHousekeeping = 4;
+constexpr std::size_t kMaxGoals = 64;  // that wait for their other end
 
 double microseconds_of(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-3;
@@ -18,12 +22,68 @@ double microseconds_of(std::int64_t nanoseconds) {
 Result<std::unique_ptr<TraceSink>> TraceSink::create(const std::string& path, const runtime::Schedule& schedule) {
   auto file = TraceFile::create(path, "cgsr run");
   if (!file) return tl::unexpected(file.error());
-  if (auto named = file->name_thread(kVision, "vision"); !named) return tl::unexpected(named.error());
-  if (auto named = file->name_thread(kMotion, "motion"); !named) return tl::unexpected(named.error());
+  for (const auto& [thread, name] : std::initializer_list<std::pair<int, std::string_view>>{
+           {kCapture, "capture"}, {kVision, "vision"}, {kMotion, "motion"}, {kHousekeeping, "housekeeping"}}) {
+    if (auto named = file->name_thread(thread, name); !named) return tl::unexpected(named.error());
+  }
   return std::unique_ptr<TraceSink>(new TraceSink(std::move(*file), schedule));
 }
 
-Result<void> TraceSink::add_frame(const runtime::FrameRecord& record) {
+Result<void> TraceSink::on_image(const ImageReport& report) {
+  const auto frame = add_frame(report.record);
+  if (!frame) return tl::unexpected(frame.error());
+  if (auto added = add_capture(*frame); !added) return added;
+  if (auto added = add_report(*frame, report.taken_at); !added) return added;
+  sent_.push_back(*frame);
+  return add_goals();
+}
+
+Result<void> TraceSink::on_missing_image(const runtime::FrameRecord& record) {
+  const auto frame = add_frame(record);
+  if (!frame) return tl::unexpected(frame.error());
+  return add_report(*frame, frame->end);
+}
+
+// What capture gave to vision.
+Result<void> TraceSink::add_capture(const DrawnFrame& frame) {
+  const MonoTime at = std::max(frame.stamp, last_capture_);
+  last_capture_ = at;
+  auto added =
+      file_.slice(kCapture, "image", at, Duration::zero(), {{"image", static_cast<std::int64_t>(frame.image)}});
+  if (added) added = file_.flow_start(kCapture, "image", frame.image, at);
+  if (added) added = file_.flow_end(kVision, "image", frame.image, std::max(frame.begin, at));
+  return added;
+}
+
+// What vision reported to housekeeping. In lock-step housekeeping takes it at the time of the stamp: it is drawn where the frame ends.
+Result<void> TraceSink::add_report(const DrawnFrame& frame, MonoTime taken_at) {
+  const MonoTime at = std::max({taken_at, frame.end, last_report_});
+  last_report_ = at;
+  const std::uint64_t number = frames_++;
+  auto added = file_.slice(kHousekeeping, "report", at, Duration::zero());
+  if (added) added = file_.flow_start(kVision, "report", number, frame.end);
+  if (added) added = file_.flow_end(kHousekeeping, "report", number, at);
+  return added;
+}
+
+// Goals whose frame and whose first cycle are both known. In lock-step a cycle may have the goal while the frame is still drawn.
+Result<void> TraceSink::add_goals() {
+  Result<void> added;
+  while (added && !sent_.empty() && !taken_.empty()) {
+    const DrawnFrame sent = sent_.front();
+    const TakenGoal taken = taken_.front();
+    if (sent.stamp <= taken.stamp) sent_.pop_front();
+    if (taken.stamp <= sent.stamp) taken_.pop_front();
+    if (sent.stamp != taken.stamp || taken.cycle < sent.begin) continue;
+    added = file_.flow_start(kVision, "goal", sent.image, std::min(sent.end, taken.cycle));
+    if (added) added = file_.flow_end(kMotion, "goal", sent.image, taken.cycle);
+  }
+  while (sent_.size() > kMaxGoals) sent_.pop_front();
+  while (taken_.size() > kMaxGoals) taken_.pop_front();
+  return added;
+}
+
+Result<TraceSink::DrawnFrame> TraceSink::add_frame(const runtime::FrameRecord& record) {
   const MonoTime begin = std::max(record.stamp, last_frame_end_);
   const Duration measured = record.finished - record.started;
   const Duration shown = std::min(measured, schedule_.frame_period());
@@ -40,7 +100,8 @@ Result<void> TraceSink::add_frame(const runtime::FrameRecord& record) {
     added = add_stage(stage, schedule_.rows()[i].name, next, std::min(duration, last_frame_end_ - next));
     next = std::min(next + duration, last_frame_end_);
   }
-  return added;
+  if (!added) return tl::unexpected(added.error());
+  return DrawnFrame{record.stamp, begin, last_frame_end_, record.image_sequence};
 }
 
 Result<void> TraceSink::add_stage(const runtime::StageRecord& stage, const std::string& name, MonoTime begin,
@@ -67,7 +128,10 @@ Result<void> TraceSink::on_control_cycle(const MotionStatus& status) {
     added =
         file_.instant(kMotion, status.cause == StopCause::kNone ? "free to move" : text(status.cause), status.stamp);
   }
-  return added;
+  if (!added || status.goal_stamp <= last_goal_) return added;
+  last_goal_ = status.goal_stamp;
+  taken_.push_back({status.goal_stamp, status.stamp});
+  return add_goals();
 }
 
 }  // namespace cgsr::sinks

@@ -12,11 +12,11 @@ class HousekeepingTask {
  public:
   HousekeepingTask(Links& links, sinks::FanOut& sinks) : links_(links), sinks_(sinks) {}
 
-  /// Deals with all that lies in the rings.
-  void step();
+  /// Deals with all that lies in the rings. \param now  on the time line of the stamps.
+  void step(MonoTime now);
 
  private:
-  void take(const sinks::VisionReport& report);
+  void take(const sinks::VisionReport& report, MonoTime now);
   [[nodiscard]] std::optional<sinks::Picture> picture_of(std::uint64_t sequence);
 
   Links& links_;

@@ -37,7 +37,18 @@ TEST_F(RunOutputs, TheTraceNestsAndHoldsEveryStageAndControlCycle) {
     EXPECT_EQ(trace.slices.at(stage), 30) << stage;
   }
   const auto run = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  EXPECT_EQ(trace.arrows.at("image"), 30) << "from capture to vision";
+  EXPECT_EQ(trace.arrows.at("report"), 30) << "from vision to housekeeping";
+  EXPECT_GE(trace.arrows.at("goal"), 28) << "from vision to motion, which may end before the last ones";
   EXPECT_EQ(trace.slices.at("control cycle"), run.at("motion").at("control_cycles").get<int>());
+}
+
+TEST_F(RunOutputs, TheSummaryHoldsTheLastOfEveryOutput) {
+  const auto run = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  for (const char* const output : {"objects", "decision", "pose", "lamp", "shade"}) {
+    EXPECT_EQ(run.at("outputs").at(output).at("updates"), 30) << output;
+  }
+  EXPECT_TRUE(run.at("outputs").at("decision").at("last").contains("goal_mps"));
 }
 
 TEST_F(RunOutputs, TheRecordingCountsWhatItHolds) {

@@ -136,6 +136,7 @@ class Checker {
         continue;
       }
       ++contents_.flows;
+      ++contents_.arrows[id.substr(0, id.rfind(' '))];
       if (end->second.at_ns < start.at_ns) problem(fmt::format("flow {} ends before it starts", id));
       if (!cut_ && !lies_in_a_slice(end->second)) problem(fmt::format("flow {} ends in no slice", id));
     }

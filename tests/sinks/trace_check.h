@@ -17,6 +17,7 @@ struct TraceContents {
   std::map<std::string, int> counters;  ///< samples by name.
   std::map<int, std::string> threads;   ///< names by number.
   int flows = 0;                        ///< arrows with both ends.
+  std::map<std::string, int> arrows;    ///< of these, by name.
   std::vector<std::string> problems;    ///< empty: the trace is sound.
 };
 
