@@ -40,7 +40,7 @@ struct StageParameters {
     visit.number("budget_us", self.budget_us, {100, 33000}, "µs", "The time that one run of the stage may take.");
     visit.number("units", self.units, {0, 1'000'000}, "1",
                  "The units of work that one run is granted where no clock decides (lock-step, replay, counting); 0 "
-                 "grants all that it requests.");
+                 "grants all that it requests. A stage that does not iterate is one unit.");
     visit.choice("on_overrun", self.on_overrun, kOnOverrunNames,
                  "The reaction to a run that took longer than its budget.");
   }

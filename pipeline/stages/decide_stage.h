@@ -17,7 +17,7 @@ class DecideStage {
   using Output = Decision;
   static constexpr std::string_view kName = "decide";
   static constexpr std::string_view kMeaning = "What the robot does about it.";
-  static constexpr runtime::StageParameters kRow{1, 0, 1000, 0, runtime::OnOverrun::kStopMotion};
+  static constexpr runtime::StageParameters kRow{1, 0, 1000, 1, runtime::OnOverrun::kStopMotion};
 
   /// \param task  not null.
   explicit DecideStage(std::unique_ptr<Task> task) : task_(std::move(task)) {}

@@ -27,7 +27,7 @@ class DecodeStage {
   using Output = View;
   static constexpr std::string_view kName = "decode";
   static constexpr std::string_view kMeaning = "Camera image to grey and colour labels.";
-  static constexpr runtime::StageParameters kRow{1, 0, 3000, 0, runtime::OnOverrun::kStopMotion};
+  static constexpr runtime::StageParameters kRow{1, 0, 3000, 1, runtime::OnOverrun::kStopMotion};
 
   struct Setup {
     int max_width_px = 0;  ///< the largest image that will come.

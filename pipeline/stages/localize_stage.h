@@ -64,7 +64,7 @@ class LocalizeStage {
   using Output = PoseEstimate;
   static constexpr std::string_view kName = "localize";
   static constexpr std::string_view kMeaning = "The robot's pose, corrected against the map (chapter 4).";
-  static constexpr runtime::StageParameters kRow{1, 0, 9000, 0, runtime::OnOverrun::kSkip};
+  static constexpr runtime::StageParameters kRow{1, 0, 9000, 8, runtime::OnOverrun::kSkip};
 
   explicit LocalizeStage(LocalizationSetup setup);
   LocalizeStage(const LocalizeStage&) = delete;

@@ -87,7 +87,7 @@ class ProbesStage {
   static constexpr std::string_view kName = "probes";
   static constexpr std::string_view kMeaning =
       "Where the lamp is: the probes' shadows, one image's lamp, the lamps of the world (Alg. 5.1).";
-  static constexpr runtime::StageParameters kRow{2, 0, 3000, 0, runtime::OnOverrun::kSkip};
+  static constexpr runtime::StageParameters kRow{2, 0, 3000, 1, runtime::OnOverrun::kSkip};
 
   /// \param X_RC  the camera's mount.
   ProbesStage(const illumination::Board& board, const illumination::ProbesParameters& probes,

@@ -18,7 +18,7 @@ class SearchStage {
   using Output = color::SearchResult;
   static constexpr std::string_view kName = "search";
   static constexpr std::string_view kMeaning = "Windows that look like the object, in the whole image (Alg. 3.2).";
-  static constexpr runtime::StageParameters kRow{1, 0, 7500, 0, runtime::OnOverrun::kSkip};
+  static constexpr runtime::StageParameters kRow{1, 0, 7500, 200, runtime::OnOverrun::kSkip};
 
   /// \param first_size  with which the first image is searched: the tracker's search_size().
   SearchStage(color::ObjectSearch search, const color::SearchSize& first_size)

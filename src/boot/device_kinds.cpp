@@ -9,6 +9,7 @@
 #include "hal/dummy/kinematic_drive.h"
 #include "hal/replay/replay_camera.h"
 #include "hal/rmp/rmp_drive.h"
+#include "src/boot/time_shifted_can_bus.h"
 
 namespace cgsr::boot {
 namespace {
@@ -60,7 +61,9 @@ constexpr std::array kCameras{OpenCameraFactory{config::CameraKind::kReplay, rep
 static_assert(complete(kCameras, config::kCameraKindNames));
 
 Made<hal::CanBus> simulated_can_bus(const DeviceContext& context) {
-  return context.simulation->take_can_bus();
+  auto bus = context.simulation->take_can_bus();
+  if (context.simulation_origin == MonoTime{}) return bus;
+  return std::make_unique<TimeShiftedCanBus>(std::move(bus), context.simulation_origin);
 }
 
 using CanBusFactory = Factory<config::CanKind, std::unique_ptr<hal::CanBus>>;

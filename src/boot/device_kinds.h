@@ -17,6 +17,7 @@ namespace cgsr::boot {
 struct DeviceContext {
   const config::Robot& config;
   hal::Simulation* simulation;  ///< null exactly when config.simulated() is false. Outlives the devices.
+  MonoTime simulation_origin;   ///< the program's time at which the simulation's is 0; 0 where its stamps are the time.
   RealClock& clock;             ///< outlives the devices.
 };
 

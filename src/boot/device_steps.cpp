@@ -7,7 +7,7 @@ namespace cgsr::boot {
 namespace {
 
 DeviceContext context_of(RobotState& state) {
-  return {state.setup.config, state.devices.simulation.get(), state.clocks.real};
+  return {state.setup.config, state.devices.simulation.get(), state.devices.simulation_origin, state.clocks.real};
 }
 
 }  // namespace
@@ -19,6 +19,7 @@ Result<void> open_simulation(RobotState& state) {
   auto simulation = load_simulation(config.sim);
   if (!simulation) return tl::unexpected(simulation.error());
   state.devices.simulation = std::move(*simulation);
+  if (state.setup.live()) state.devices.simulation_origin = state.clocks.real.now();
   for (const std::string& note : state.devices.simulation->notes()) state.report.notes.push_back(note);
   if (config.simulated_camera() && !config.simulated_base()) {
     state.report.notes.emplace_back("the simulated camera stands still: the base is not the simulated Segway");

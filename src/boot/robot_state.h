@@ -51,6 +51,7 @@ struct Clocks {
 /// The devices, each started.
 struct Devices {
   std::unique_ptr<hal::Simulation> simulation;  ///< null: none of the devices is simulated. Outlives them.
+  MonoTime simulation_origin{};                 ///< live: the clock's time at which the simulation's is 0.
   std::unique_ptr<hal::Camera> camera;
   hal::CameraMode mode;
   MonoTime next_due{};  ///< when the next image is there, in lock-step.

@@ -21,17 +21,17 @@ constexpr Duration kHousekeepingPeriod = seconds(0.01);
 class LiveLoops {
  public:
   LiveLoops(tasks::CaptureTask& capture, tasks::VisionTask& vision, tasks::MotionTask& motion,
-            tasks::SwitchTask& switches, tasks::HousekeepingTask& housekeeping, RealClock& clock, StopRequest& stop,
-            tasks::Links& links)
+            tasks::SwitchTask& switches, tasks::HousekeepingTask& housekeeping, RobotState& state, StopRequest& stop)
       : capture_(capture),
         vision_(vision),
         motion_(motion),
         switches_(switches),
         housekeeping_(housekeeping),
-        clock_(clock),
+        devices_(state.devices),
+        clock_(state.clocks.real),
         stop_(stop),
-        links_(links) {
-    const MonoTime now = clock.now();
+        links_(state.links) {
+    const MonoTime now = clock_.now();
     capture_beat_ = heartbeats.add("capture", 3 * capture.period() + seconds(0.5), now);
     vision_beat_ = heartbeats.add("vision", 3 * capture.period() + seconds(0.5), now);
     motion_beat_ = heartbeats.add("motion", seconds(0.2), now);
@@ -74,6 +74,7 @@ class LiveLoops {
     Periodic look(clock_, tasks::kSwitchPeriod);
     while (!stop_.requested()) {
       look.wait();
+      advance_simulation();
       if (const auto problem = switches_.step()) spdlog::error("switches: {}", *problem);
     }
   }
@@ -89,11 +90,18 @@ class LiveLoops {
   Heartbeats heartbeats;
 
  private:
+  /// The simulated home's lines belong to the thread that uses them; its base follows its bus.
+  void advance_simulation() {
+    if (devices_.simulation == nullptr) return;
+    devices_.simulation->advance_to(MonoTime{clock_.now() - devices_.simulation_origin});
+  }
+
   tasks::CaptureTask& capture_;
   tasks::VisionTask& vision_;
   tasks::MotionTask& motion_;
   tasks::SwitchTask& switches_;
   tasks::HousekeepingTask& housekeeping_;
+  Devices& devices_;
   RealClock& clock_;
   StopRequest& stop_;
   tasks::Links& links_;
@@ -142,7 +150,7 @@ Result<void> run_live(RobotState& state, StopRequest& stop) {
   tasks::MotionTask motion(*state.devices.base, stop, Duration::zero(), state.setup.options.arm, state.links);
   tasks::SwitchTask switches(*state.devices.switches, state.lines(), clock, state.links);
   tasks::HousekeepingTask housekeeping(state.links, state.outputs.sinks);
-  LiveLoops loops(capture, vision, motion, switches, housekeeping, clock, stop, state.links);
+  LiveLoops loops(capture, vision, motion, switches, housekeeping, state, stop);
 
   ThreadTable threads(stop);
   if (auto started = start_threads(threads, loops, state.links); !started) return started;

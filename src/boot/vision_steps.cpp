@@ -145,16 +145,19 @@ Result<void> load_map(RobotState& state) {
   return {};
 }
 
-/// Camera and mount, where the robot's file names them.
+/// Camera and mount, each where the robot's file names it: a calibrated camera serves every task, without a mount too.
 Result<void> read_calibration(RobotState& state) {
   const config::RobotLocalization& known = state.setup.config.localization;
-  if (known.camera.empty() || known.mount.empty()) return {};
-  const auto camera = app::read_camera(known.camera);
-  if (!camera) return tl::unexpected(camera.error());
-  const auto X_RC = app::read_mount(known.mount);
-  if (!X_RC) return tl::unexpected(X_RC.error());
-  state.calibration.camera = *camera;
-  state.calibration.X_RC = *X_RC;
+  if (!known.camera.empty()) {
+    const auto camera = app::read_camera(known.camera);
+    if (!camera) return tl::unexpected(camera.error());
+    state.calibration.camera = *camera;
+  }
+  if (!known.mount.empty()) {
+    const auto X_RC = app::read_mount(known.mount);
+    if (!X_RC) return tl::unexpected(X_RC.error());
+    state.calibration.X_RC = *X_RC;
+  }
   return {};
 }
 

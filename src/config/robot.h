@@ -135,10 +135,10 @@ struct Robot {
              "judged "
              "by the probes' shadows";
     }
-    if (live && simulated()) {
-      return "run.pace = \"live\" does not go with devices of the simulated home (camera.kind, base.can, switches.kind "
-             "= "
-             "\"sim\"): lock_step or real_time";
+    if (live && simulated_camera()) {
+      return "run.pace = \"live\" does not go with camera.kind = \"sim\", which is not rendered in real time: "
+             "lock_step "
+             "or real_time";
     }
     if (camera.kind != CameraKind::kReplay) return "";
     const bool own_rate = camera.replay.pace == hal::ReplayPace::kOwnRate;

@@ -82,6 +82,33 @@ TEST_F(DeviceKinds, ReplayedImagesDriveTheSimulatedSegwayOnItsBus) {
   EXPECT_EQ(summary["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
 }
 
+// Threads, rings and the CAN driver meet: the images come at their own rate, the Segway moves by the real clock. The best of five runs counts:
+// where another program holds the processor the images are late, and the robot rightly stands still.
+TEST_F(DeviceKinds, LiveThreadsDriveTheSimulatedSegwayBeforeReplayedImages) {
+  const Keys keys = in_the_home({{"base.kind", quoted("rmp")},
+                                 {"switches.kind", quoted("sim")},
+                                 {"run.pace", quoted("live")},
+                                 {"camera.replay.pace", quoted("own_rate")}});
+  auto summary = run(robot(keys), {"--duration", "1.8"});
+  for (int attempt = 1; attempt < 5 && summary["motion"]["cycles_in_motion"] <= 15; ++attempt) {
+    summary = run(robot(keys), {"--duration", "1.8"});
+  }
+  EXPECT_GT(summary["motion"]["cycles_in_motion"], 15);
+  EXPECT_NE(summary["motion"]["odometry"], nlohmann::json::array({0.0, 0.0, 0.0}));
+  EXPECT_EQ(summary["motion"]["last_command"], nlohmann::json::array({0.0, 0.0}));
+}
+
+// Whether there is a mount or not, the calibration is the one camera model of all that look through it.
+TEST_F(DeviceKinds, TheCalibrationOfAnotherCameraIsRefusedWithoutAMountToo) {
+  auto camera = read_text(CGSR_SOURCE_DIR "/config/maps/home/camera.yaml");
+  replace(camera, "image_height: 480", "image_height: 360");
+  write_text(scratch_ / "camera.yaml", camera);
+  const auto outcome =
+      run_cgsr({"check", "--config", robot({{"localization.camera", quoted(scratch_ / "camera.yaml")}})});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("another camera's file?"));
+}
+
 TEST_F(DeviceKinds, TheSimulatedCameraGoesWithAnIdealBaseAndLinesInMemory) {
   const Keys keys = before_the_cart({{"switches.arming_line", quoted("a line that the scenario does not have")}});
   const auto summary = run(robot(keys), {"--duration", "0.5"});

@@ -203,7 +203,7 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
        "/nowhere/at/all.csv: cannot be written"},
   };
   for (const Case& wrong : cases) {
-    const auto run = localize(wrong.message, wrong.map, wrong.camera);
+    const auto run = localize(wrong.words, wrong.map, wrong.camera);
     EXPECT_EQ(run.exit_code, 1) << wrong.cause;
     EXPECT_THAT(run.errors, HasSubstr(wrong.cause));
   }

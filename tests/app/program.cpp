@@ -85,7 +85,7 @@ ScratchFolder::~ScratchFolder() {
   std::filesystem::remove_all(path_);
 }
 
-std::string make_images(const std::filesystem::path& folder, int count) {
+std::string make_images(const std::filesystem::path& folder, int count, int scale) {
   std::filesystem::create_directories(folder);
   cv::Mat ground(240, 320, CV_8UC3);
   cv::RNG random(7);
@@ -96,6 +96,7 @@ std::string make_images(const std::filesystem::path& folder, int count) {
     const cv::Rect patch(40 + 2 * i % 200, 80, 60, 80);
     image(patch).setTo(cv::Scalar(40, 40, 220));
     image(cv::Rect(patch.x, patch.y + 40, 60, 40)).setTo(cv::Scalar(200, 90, 30));
+    if (scale != 1) cv::resize(image, image, {}, scale, scale);
     cv::imwrite((folder / fmt::format("{:04}.png", i)).string(), image);
   }
   return "40,80,60,80";

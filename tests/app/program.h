@@ -58,9 +58,10 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// A short made video folder: a two-coloured patch of 60x80 px that moves over cluttered ground.
-/// \return the region of the patch in image 0 as --region takes it.
-std::string make_images(const std::filesystem::path& folder, int count);
+/// A short made video folder of 320x240 px: a two-coloured patch of 60x80 px that moves over cluttered ground.
+/// \param scale  enlarges the images.
+/// \return the region of the patch in image 0 of scale 1 as --region takes it.
+std::string make_images(const std::filesystem::path& folder, int count, int scale = 1);
 
 std::string read_text(const std::string& path);
 void write_text(const std::string& path, const std::string& text);

@@ -83,26 +83,51 @@ TEST_F(RunReplay, LiveRunsEndAfterTheirDurationWithZeroAsTheLastCommand) {
   for (const auto& [name, stage] : run["stages"].items()) EXPECT_GT(stage["worst_us"], 0.0) << name;
 }
 
+/// Runs until some images are in `csv`, then ends it. \return its resident memory [MB]; also expects that no OpenGL was loaded.
+double resident_mb(const std::vector<std::string>& arguments, const std::string& csv) {
+  RunningCgsr running(arguments);
+  while (read_text(csv).size() < 2000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  const std::string proc = "/proc/" + std::to_string(running.process());
+  const auto status = read_text(proc + "/status");
+  const auto maps = read_text(proc + "/maps");
+  running.send(SIGTERM);
+  const auto outcome = running.wait();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(maps.find("OSMesa"), std::string::npos);
+  EXPECT_EQ(maps.find("cgsr-opengl"), std::string::npos);
+  const auto at = status.find("VmRSS:");
+  return at == std::string::npos ? 0.0 : std::stod(status.substr(at + 6)) * 1024e-6;
+}
+
 // A follower by colour, with memory locked or not: its own and what it uses of the libraries, not all that stands behind them.
 TEST_F(RunReplay, ALiveFollowerTakesAtMost120MegabytesAndNoOpenGl) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "SKIPPED: a sanitizer brings its own memory";
 #endif
   const auto csv = scratch_ / "run.csv";
-  RunningCgsr running(arguments(live_config(), {"--csv", csv}));
-  while (read_text(csv).size() < 2000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  const std::string proc = "/proc/" + std::to_string(running.process());
-  const auto status = read_text(proc + "/status");
-  const auto maps = read_text(proc + "/maps");
-  running.send(SIGTERM);
-  EXPECT_EQ(running.wait().exit_code, 0);
-  const auto at = status.find("VmRSS:");
-  ASSERT_NE(at, std::string::npos);
-  const long resident_kib = std::stol(status.substr(at + 6));
-  EXPECT_GT(resident_kib, 10'000);
-  EXPECT_LE(resident_kib, 120'000) << status;
-  EXPECT_EQ(maps.find("OSMesa"), std::string::npos);
-  EXPECT_EQ(maps.find("cgsr-opengl"), std::string::npos);
+  const double resident = resident_mb(arguments(live_config(), {"--csv", csv}), csv);
+  EXPECT_GT(resident, 10.0);
+  EXPECT_LE(resident, 120.0);
+}
+
+// The robot with the probe board, its map and its ball: images come from a folder, so that no simulator is in the process.
+TEST_F(RunReplay, ChaptersThreeToFiveLiveTakeAtMost160MegabytesAndNoOpenGl) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "SKIPPED: a sanitizer brings its own memory";
+#endif
+  make_images(scratch_ / "large", 20, 2);
+  write_text(scratch_ / "lamp.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-home-lamp.toml",
+                                              {{"camera.kind", quoted("replay")},
+                                               {"camera.replay.path", quoted(scratch_ / "large")},
+                                               {"camera.replay.pace", quoted("own_rate")},
+                                               {"camera.replay.loop", "true"},
+                                               {"base.kind", quoted("kinematic")},
+                                               {"switches.kind", quoted("dummy")},
+                                               {"run.pace", quoted("live")}}));
+  const auto csv = scratch_ / "run.csv";
+  const double resident = resident_mb({"run", "--config", scratch_ / "lamp.toml", "--csv", csv}, csv);
+  EXPECT_GT(resident, 10.0);
+  EXPECT_LE(resident, 160.0);
 }
 
 TEST_F(RunReplay, ALostCameraIsAFailure) {

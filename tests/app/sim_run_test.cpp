@@ -149,7 +149,7 @@ TEST_F(RunSimulated, TroubleByScriptStopsTheRobotAndIsNamed) {
   EXPECT_THAT(gone.errors, HasSubstr("error: camera: the simulated camera is gone"));
 }
 
-TEST_F(RunSimulated, LiveThreadsAndASimulatedHomeDoNotGoTogether) {
+TEST_F(RunSimulated, LiveThreadsAndASimulatedCameraDoNotGoTogether) {
   const auto outcome = run_cgsr({"run", "--config", small_robot({{"run.pace", quoted("live")}})});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, HasSubstr("lock_step or real_time"));

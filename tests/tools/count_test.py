@@ -1,7 +1,13 @@
-"""tools/count on a made-up program and a made-up valgrind: what is run, in which order and with which images, and what is summed."""
+"""tools/count on a made-up program and a made-up valgrind: what is run, in which order and with which images, and what is summed.
+
+usage: count_test.py [CGSR]: with the program, also whether tools/count understands what `cgsr config show` prints of the shipped robots.
+"""
+import importlib.machinery
+import importlib.util
 import json
 import pathlib
 import subprocess
+import sys
 import tempfile
 import textwrap
 import unittest
@@ -10,7 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Answers `config show` with its camera, and notes how else it was called.
 PROGRAM = """\
     #!/bin/sh
-    if [ "$1" = config ]; then echo '[camera]'; echo "source = \\"$CAMERA\\"  # robot.toml:3"; exit 0; fi
+    if [ "$1" = config ]; then echo '[camera]'; echo "kind = \\"$CAMERA\\"  # robot.toml:3"; echo '[base]'; echo 'kind = "sim"'; exit 0; fi
     echo "plain $CGSR_SIM_IMAGES: $*" >> "$NOTES"
     exit "${PLAIN_EXIT:-0}"
     """
@@ -22,6 +28,25 @@ VALGRIND = """\
     printf 'desc: Trigger: Client Request: cgsr 0 track\\ntotals: 3000000\\n' > "$out"
     printf 'desc: Trigger: Client Request: cgsr 1 track\\ntotals: 1000000\\n' >> "$out"
     """
+CGSR = sys.argv.pop(1) if len(sys.argv) > 1 and not sys.argv[1].startswith("-") else None
+
+
+def counting():
+    """tools/count as a module."""
+    loader = importlib.machinery.SourceFileLoader("count", str(ROOT / "tools/count"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("count", loader))
+    sys.dont_write_bytecode = True
+    loader.exec_module(module)
+    return module
+
+
+class ShippedRobots(unittest.TestCase):
+    @unittest.skipIf(CGSR is None, "skipped: no program named")
+    def test_robots_with_a_simulated_camera_are_recognised(self):
+        is_simulated_run = counting().is_simulated_run
+        for robot, simulated in (("sim-home", True), ("sim-home-round", True), ("sim-home-lamp", True), ("video", False)):
+            command = [CGSR, "run", "--config", str(ROOT / f"config/robots/{robot}.toml")]
+            self.assertEqual(is_simulated_run(command), simulated, robot)
 
 
 class Count(unittest.TestCase):
