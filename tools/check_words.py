@@ -3,7 +3,8 @@
 
 usage: check_words.py [ROOT]
 
-Reports each as file:line. docs/glossary.md and CHANGELOG.md may contain them. Only unambiguous words are listed.
+Reports each as file:line, in whatever case, and file names that contain one. docs/glossary.md and CHANGELOG.md may contain them. Only
+unambiguous words are listed.
 """
 import re
 import sys
@@ -24,20 +25,38 @@ WORDS = {
     r"\bis is not known\b": "unknown, as in 'robot pose unknown'",
     r"\bcovariance is none\b": "covariance is not positive definite",
     r"\bwhat is not is passed by\b": "other messages are ignored",
+    r"\btelling_\w+|(?:\.|->|::)telling\b": "information weight",
 }
-PATTERN = re.compile("|".join(f"({words})" for words in WORDS))
+PATTERN = re.compile("|".join(f"({words})" for words in WORDS), re.IGNORECASE)
 SUFFIXES = {".h", ".cpp", ".py", ".md", ".toml", ".txt", ".cmake", ".sh"}
 EXEMPT = {"docs/glossary.md", "CHANGELOG.md", "tools/check_words.py", "tests/tools/check_words_test.py"}
+
+
+def is_text(file):
+    """Sources, pages, and scripts that have no suffix."""
+    if file.suffix in SUFFIXES:
+        return True
+    if file.suffix or not file.is_file():
+        return False
+    with file.open("rb") as content:
+        return content.read(2) == b"#!"
+
+
+def words_in(text):
+    for match in PATTERN.finditer(text):
+        yield f"'{match.group()}': expected {list(WORDS.values())[match.lastindex - 1]}"
 
 
 def problems(root):
     for file in sorted(root.rglob("*")):
         path = file.relative_to(root).as_posix()
-        if path.startswith(("build/", "out/", ".git/")) or path in EXEMPT or file.suffix not in SUFFIXES or not file.is_file():
+        if path.startswith(("build/", "out/", ".git/")) or path in EXEMPT or not is_text(file) or not file.is_file():
             continue
+        for problem in words_in(path.replace("_", " ")):
+            yield f"{path}: the file's name: {problem}"
         for number, line in enumerate(file.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
-            for match in PATTERN.finditer(line):
-                yield f"{path}:{number}: '{match.group()}': expected {list(WORDS.values())[match.lastindex - 1]}"
+            for problem in words_in(line):
+                yield f"{path}:{number}: {problem}"
 
 
 if __name__ == "__main__":

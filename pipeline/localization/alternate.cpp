@@ -183,10 +183,10 @@ bool Alternation::on_map(const PerceivedEdge& edge) const {
 
 // Of all that was perceived, each by how much it tells; from outside of the map what lies on it.
 float Alternation::length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const {
-  if (bounds_.contains(X_WC.translation())) return perceived.telling_length();
+  if (bounds_.contains(X_WC.translation())) return perceived.weighted_length();
   float length = 0.0F;
   for (const PerceivedEdge& edge : perceived.edges()) {
-    if (on_map(edge)) length += 2.0F * edge.half_length * edge.telling;
+    if (on_map(edge)) length += 2.0F * edge.half_length * edge.information_weight;
   }
   return length;
 }
@@ -203,7 +203,7 @@ void Alternation::judge(std::span<const Match> matches, const SegmentTable& perc
     found += length * view_.projected()[match.projected].weight;
     const PerceivedEdge& edge = perceived.edges()[match.perceived];
     foreseen += length * edge.weight;
-    foretold += length * edge.telling;
+    foretold += length * edge.information_weight;
   }
   const float both = expected + perceived.whole_length();
   estimate.explained = expected > 0.0F ? std::min(1.0F, found / expected) : 0.0F;
@@ -223,11 +223,11 @@ void Alternation::judge_by_part(std::span<const Match> matches, const SegmentTab
   for (const PerceivedEdge& edge : perceived.edges()) {
     if (!surrounded && !on_map(edge)) continue;
     const Eigen::Vector2f half = edge.half_length * edge.direction;
-    by_part_.add(edge.middle - half, edge.middle + half, edge.telling);
+    by_part_.add(edge.middle - half, edge.middle + half, edge.information_weight);
   }
   for (const Match& match : matches) {
     const ProjectedPiece& piece = view_.projected()[match.projected];
-    const float weight = nearness(match) * (piece.weight + perceived.edges()[match.perceived].telling);
+    const float weight = nearness(match) * (piece.weight + perceived.edges()[match.perceived].information_weight);
     by_part_.agree(piece.middle + match.from_px * piece.direction, piece.middle + match.to_px * piece.direction,
                    weight);
   }

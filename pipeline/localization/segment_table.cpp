@@ -11,7 +11,7 @@ namespace {
 constexpr float kSureContrast = 30.0F;  // grey levels
 constexpr float kLeastWeight = 0.25F;
 // What is printed on a sheet, or woven, is in no map: many short edges. A long one is rather a thing's.
-constexpr float kTelling_px = 60.0F;  // this long, it says all it can
+constexpr float kFullWeight_px = 60.0F;  // this long, it says all it can
 
 }  // namespace
 
@@ -55,7 +55,7 @@ void SegmentTable::finish() {
   y_.resize(sum);
   half_length_.resize(sum);
   whole_length_ = 0.0F;
-  telling_length_ = 0.0F;
+  weighted_length_ = 0.0F;
   for (const PerceivedEdge& edge : added_) {
     const std::size_t i = next[static_cast<std::size_t>(bin_of(edge.direction))]++;
     sorted_[i] = edge;
@@ -64,9 +64,9 @@ void SegmentTable::finish() {
     y_[i] = edge.middle.y();
     half_length_[i] = edge.half_length;
     const float length = 2.0F * edge.half_length;
-    sorted_[i].telling = sorted_[i].weight * std::min(1.0F, length / kTelling_px);
+    sorted_[i].information_weight = sorted_[i].weight * std::min(1.0F, length / kFullWeight_px);
     whole_length_ += length * sorted_[i].weight;
-    telling_length_ += length * sorted_[i].telling;
+    weighted_length_ += length * sorted_[i].information_weight;
   }
 }
 

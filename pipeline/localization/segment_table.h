@@ -19,7 +19,8 @@ struct PerceivedEdge {
   float sigma_px = 0.1F;  ///< of the line, across.
   float weight =
       1.0F;  ///< how sure it is to be an edge of things, not of their light, 0..1; from the contrast, by SegmentTable.
-  float telling = 1.0F;  ///< how much it says for a pose that expects it, or against one that does not, 0..1; likewise.
+  float information_weight =
+      1.0F;  ///< how much it says for a pose that expects it, or against one that does not, 0..1; likewise.
 
   [[nodiscard]] Eigen::Vector2f normal() const { return {-direction.y(), direction.x()}; }
 };
@@ -46,7 +47,7 @@ class SegmentTable {
   /// Of all edges together, each by its weight, pixels.
   [[nodiscard]] float whole_length() const { return whole_length_; }
   /// Likewise, each by how much it tells.
-  [[nodiscard]] float telling_length() const { return telling_length_; }
+  [[nodiscard]] float weighted_length() const { return weighted_length_; }
   static int bin_of(const Eigen::Vector2f& direction);
 
   [[nodiscard]] const float* x() const { return x_.data(); }
@@ -61,7 +62,7 @@ class SegmentTable {
   std::vector<float> y_;
   std::vector<float> half_length_;
   float whole_length_ = 0.0F;
-  float telling_length_ = 0.0F;
+  float weighted_length_ = 0.0F;
   std::array<std::size_t, kBins + 1> first_{};
 };
 

@@ -6,7 +6,7 @@
 #include "pipeline/localization/correction.h"
 #include "platform/error.h"
 #include "platform/image_view.h"
-#include "src/config/whereabouts.h"
+#include "src/config/robot_localization.h"
 
 namespace cgsr::boot {
 

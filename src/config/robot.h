@@ -14,7 +14,7 @@
 #include "src/config/color.h"
 #include "src/config/devices.h"
 #include "src/config/light.h"
-#include "src/config/whereabouts.h"
+#include "src/config/robot_localization.h"
 
 namespace cgsr::config {
 

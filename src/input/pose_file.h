@@ -23,11 +23,10 @@ struct PoseRow {
   int line = 0;  ///< in the file, from 1.
 };
 
-/// Reads poses from CSV with the columns `[frame,]tx,ty,tz,qw,qx,qy,qz`, named in the first line in any order; further columns are passed
-/// by, so that what `cgsr localize --csv` wrote can be read back. Metres and a unit quaternion. Columns `sigma_m` and `sigma_deg`
+/// Reads poses from CSV with the columns `[frame,]tx,ty,tz,qw,qx,qy,qz`, named in the first line in any order; further columns are
+/// ignored, so that what `cgsr localize --csv` wrote can be read back. Metres and a unit quaternion. Columns `sigma_m` and `sigma_deg`
 /// may say how well a pose is known: standard deviations of each coordinate and about each axis; a column `corrected`, whether it was measured
-/// (1) or predicted (0). Empty lines and lines that begin with '#'
-/// are passed by.
+/// (1) or predicted (0). Empty lines and lines that begin with '#' are ignored.
 ///
 /// \return at least one row, frames rising; or the first thing that is wrong, with file, line, value and what was expected.
 Result<std::vector<PoseRow>> read_poses(const std::filesystem::path& file);

@@ -24,7 +24,7 @@ std::size_t below(Random& random, std::size_t bound) {
   return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random);
 }
 
-/// One small damage: bytes changed, removed, inserted, a piece repeated, two pieces swapped, or a telling word put in.
+/// One small damage: bytes changed, removed, inserted, a piece repeated, two pieces swapped, or a word of the format put in.
 std::string damaged(std::string text, Random& random) {
   static const std::string kWords[] = {"nan",
                                        "-inf",

@@ -37,7 +37,7 @@ CanBusRig scripted_bus() {
   struct World {
     test::ScriptedCan kernel;
     MonoTime now = kBegin;
-    std::size_t heard = 0;
+    std::size_t received = 0;
   };
   auto world = std::make_shared<World>();
   CanBusRig rig;
@@ -50,10 +50,10 @@ CanBusRig scripted_bus() {
     frame.stamp = world->now;
     world->kernel.data(frame);
   };
-  rig.heard = [world] {
+  rig.received = [world] {
     std::vector<CanFrame> frames;
-    for (; world->heard < world->kernel.outgoing.size(); ++world->heard)
-      frames.push_back(to_hal(world->kernel.outgoing[world->heard], world->now));
+    for (; world->received < world->kernel.outgoing.size(); ++world->received)
+      frames.push_back(to_hal(world->kernel.outgoing[world->received], world->now));
     return frames;
   };
   return rig;
@@ -76,7 +76,7 @@ CanBusRig virtual_bus() {
     frame.stamp = world->now;
     (void)world->other->send(frame);
   };
-  rig.heard = [world] {
+  rig.received = [world] {
     std::vector<CanFrame> frames(64);
     frames.resize(world->other->receive(world->now, frames));
     return frames;
@@ -108,7 +108,7 @@ CanBusRig vcan_bus() {
     std::copy(frame.data.begin(), frame.data.end(), std::begin(out.data));
     ASSERT_EQ(world->other->send(out), 0);
   };
-  rig.heard = [world] {
+  rig.received = [world] {
     std::vector<CanFrame> frames;
     socketcan::RawFrame raw;
     while (world->other->receive(raw) == 0) {

@@ -19,9 +19,9 @@ struct CanBusRig {
   std::shared_ptr<void> world;  ///< whatever must outlive the bus.
   std::unique_ptr<CanBus> bus;
   std::function<MonoTime()> now;
-  std::function<void(double)> wait;              ///< lets seconds pass.
-  std::function<void(const CanFrame&)> say;      ///< the other node sends now.
-  std::function<std::vector<CanFrame>()> heard;  ///< what the other node heard since the last call.
+  std::function<void(double)> wait;                 ///< lets seconds pass.
+  std::function<void(const CanFrame&)> say;         ///< the other node sends now.
+  std::function<std::vector<CanFrame>()> received;  ///< what the other node received since the last call.
 };
 
 struct CanBusCase {
@@ -91,12 +91,12 @@ TEST_P(CanBusContract, WhatIsSentIsHeardAndDoesNotComeBack) {
     ASSERT_TRUE(bus().send(command(i)));
     rig_.wait(0.01);
   }
-  const auto heard = rig_.heard();
-  ASSERT_EQ(heard.size(), 5U);
+  const auto received = rig_.received();
+  ASSERT_EQ(received.size(), 5U);
   for (std::uint8_t i = 0; i < 5; ++i) {
-    EXPECT_EQ(heard[i].id, 0x413);
-    EXPECT_EQ(heard[i].size, 8);
-    EXPECT_EQ(heard[i].data, command(i).data);
+    EXPECT_EQ(received[i].id, 0x413);
+    EXPECT_EQ(received[i].size, 8);
+    EXPECT_EQ(received[i].data, command(i).data);
   }
   EXPECT_TRUE(receive_all().empty());
   EXPECT_EQ(bus().counters().sent, 5U);

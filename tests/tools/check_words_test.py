@@ -15,6 +15,11 @@ class CheckWords(CheckTestCase):
             self.assertIn("src/a.cpp:2: ", result.stdout)
             self.assertIn(term, result.stdout)
 
+    def test_file_names_any_case_and_scripts_without_suffix(self):
+        self.assertIn("whereabouts.h: the file's name: 'whereabouts'", self.run_on("src/whereabouts.h", "\n").stdout)
+        self.assertIn("tools/run:2: 'floorbelief'", self.run_on("tools/run", "#!/usr/bin/env bash\nfloorbelief\n").stdout)
+        self.assertEqual(self.run_on("tools/data", "floorbelief\n").stdout, "")
+
     def test_standard_terms_and_the_glossary_pass(self):
         self.assertEqual(self.run_on("src/a.cpp", "to_string(rename_offset); // robot pose unknown\n").stdout, "")
         self.assertEqual(self.run_on("docs/glossary.md", "FloorBelief\n").returncode, 0)
