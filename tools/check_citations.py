@@ -12,7 +12,8 @@ import sys
 from listed_problems import report
 
 ROOMS = [f"pipeline/{room}" for room in
-         ("color", "localization", "illumination", "render", "behavior", "imaging", "geometry", "motion", "stages")]
+         ("color", "localization", "illumination", "render", "behavior", "imaging", "geometry", "motion", "stages",
+          "calibration", "world", "person")]
 # What chapters 2 to 6 of the dissertation number, by the first letters of its name in a citation.
 NUMBERED = {
     "eq": "3.1 3.2 4.1 4.2 4.3 4.4 4.5 5.1 5.2",

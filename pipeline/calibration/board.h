@@ -12,7 +12,7 @@ namespace cgsr::calibration {
 
 /// A chessboard. Its frame: origin at the first inner corner, x along the row of `columns` inner corners, y down the columns, z into the
 /// board, away from who looks at it. When columns + rows is odd, the first corner is the one whose square towards the board's middle is
-/// black, and there is one frame only.
+/// black, and there is one frame only. Ours: the dissertation takes its camera for calibrated.
 struct Board {
   int columns = 9;  ///< inner corners in a row.
   int rows = 6;

@@ -38,7 +38,7 @@ struct IntrinsicsOptions {
 /// Share of the cells of a 6x4 raster that hold a corner. \param empty  receives words for the emptiest part, when given.
 double coverage_of(const std::vector<BoardView>& views, const cv::Size& size, std::string* empty = nullptr);
 
-/// Intrinsics and distortion from views of a board (Zhang's method, by OpenCV).
+/// Intrinsics and distortion from views of a board (Zhang 2000, by OpenCV).
 /// \return or why not: too few views, a part of the image that no board came to, views too much alike to tell focal length from distance,
 ///         residuals that are no measurement errors (a wrong board).
 Result<Intrinsics> calibrate_intrinsics(const std::vector<BoardView>& views, const Board& board, const cv::Size& size,

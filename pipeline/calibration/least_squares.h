@@ -17,7 +17,7 @@ struct Fit {
   [[nodiscard]] double sigma(Eigen::Index i) const { return std::sqrt(covariance(i, i)); }
 };
 
-/// Levenberg and Marquardt with differences for derivatives: for calibrations, which have few parameters and all the time.
+/// (Levenberg 1944, Marquardt 1963) with differences for derivatives: for calibrations, which have few parameters and all the time.
 /// \param residuals_at  a vector as long as there are measurements, out of parameters of order 1 (metres, radians, scales).
 Fit fit_least_squares(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& residuals_at,
                       Eigen::VectorXd parameters);

@@ -33,7 +33,7 @@ struct Marker {
 };
 
 /// \param image  grey or BGR, of the camera's size.
-/// \return X_WC as a marker of known size and place shows it (an ArUco marker, 4x4, of OpenCV's DICT_4X4_50); nothing when it is not seen,
+/// \return X_WC as a marker of known size and place shows it (ArUco, Garrido-Jurado et al. 2014; 4x4, of OpenCV's DICT_4X4_50); nothing when it is not seen,
 /// is seen twice, or is so small or so oblique that its pose is not certain.
 std::optional<geometry::Pose> camera_by_marker(const Marker& marker, const geometry::Camera& camera,
                                                const cv::Mat& image);

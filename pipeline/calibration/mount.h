@@ -31,7 +31,7 @@ Result<Mount> mount_from_boards(const std::vector<BoardView>& views, const std::
                                 const Board& board, const geometry::Camera& camera);
 
 /// From camera poses in the map beside the odometry's poses at the same moments: X_WC = X_WO X_OR X_RC, where O lies on W's floor. Because
-/// the floor is the map's, the camera's height follows although the robot never leaves it.
+/// the floor is the map's, the camera's height follows although the robot never leaves it. Ours; the equation is that of (Shiu and Ahmad 1989).
 /// \return or why not: fewer than 6 pairs, turns of less than 30 degrees in all, no way driven, or one circle (its middle turns with the camera's direction),
 ///         poses that contradict the odometry (RMS above 10 cm).
 Result<Mount> mount_from_poses(const std::vector<geometry::Pose>& X_WC, const std::vector<geometry::Pose>& X_OR);

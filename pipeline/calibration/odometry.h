@@ -26,7 +26,7 @@ struct OdometryFit {
 std::vector<geometry::Pose> scaled_odometry(const std::vector<geometry::Pose>& X_OR, double forward, double turn);
 
 /// Least squares over stretches of about `stretch_m` of way (or 60 degrees of turn): each stretch of the scaled odometry is laid on the true
-/// one's first pose and compared at its end, so that errors of the start and slip of other stretches stay out.
+/// one's first pose and compared at its end, so that errors of the start and slip of other stretches stay out. Ours.
 /// \return or why not: fewer than 3 stretches, hardly any way or turn; true poses that lean as a camera's do; the scaled odometry lies too far
 ///         off; a scale that no robot's file takes, or that is known too badly.
 Result<OdometryFit> calibrate_odometry(const std::vector<geometry::Pose>& X_OR, const std::vector<geometry::Pose>& X_WR,

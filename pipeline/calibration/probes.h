@@ -31,7 +31,7 @@ struct ProbeCalibration {
 };
 
 /// Moves each tip, and turns the board, until the lamp's shadows fall where they were seen; what was measured by hand is the prior. Tips and turn
-/// come apart where images show the lamp from different sides. The mount is the mean of what each image's registration found.
+/// come apart where images show the lamp from different sides. The mount is the mean of what each image's registration found. Ours; the shadows fall along the rays of Eq. 5.1 and 5.2.
 ///
 /// \param board  as `views` were observed with. \param p_WL  where the lamp is, world frame.
 /// \return or why not: fewer than four shadows, shadows that contradict each other (RMS above 4 mm).

@@ -12,7 +12,7 @@ struct ImageContext {
   double blurred = 0.0;    ///< 0: edges are as sharp as the lens makes them; 1: no edge is left.
 };
 
-/// By how much a disturbed image lowers the confidence of a kind of classifier (future work of 8.3).
+/// By how much a disturbed image lowers the confidence of a kind of classifier. Ours: the dissertation names it as future work.
 struct ContextParameters {
   double dark_color = 0.8;
   double dark_grey = 0.4;

@@ -8,7 +8,7 @@
 namespace cgsr::world {
 
 /// A map with its edges, cleaned up, as one block of numbers: "CGSRMAP" and a version, the counts, SHA-256 of what follows, then vertices, triangles,
-/// surfaces, edges and materials, little-endian.
+/// surfaces, edges and materials, little-endian. Ours.
 inline constexpr const char* kCompactExtension = ".cgsrmap";
 
 /// Writes it beside `path`, as NAME.part, and renames it there: nobody reads half of it, and where it cannot be written what was there remains.

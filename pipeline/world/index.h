@@ -41,7 +41,7 @@ struct Hit {
 };
 
 /// Finds what of a map lies somewhere: two hierarchies of boxes, over triangles and over edges. Made once for a map, which outlives it and does
-/// not change; no query allocates, and any number of threads may ask.
+/// not change; no query allocates, and any number of threads may query it. Ours; boxes against the frustum as in (Assarsson and Moller 2000).
 class Index {
  public:
   explicit Index(const Map& map);

@@ -57,7 +57,7 @@ struct Edge {
   float contrast = 0.0F;
 };
 
-/// The static geometry that the robot knows, in W, metres, z up. Plain arrays: made once by the loader, never changed after.
+/// The static geometry that the robot knows, in W, metres, z up. Plain arrays: made once by the loader, never changed after. The world model of section 4.2.
 struct Map {
   std::vector<Eigen::Vector3f> vertices;
   std::vector<Triangle> triangles;  ///< those of a surface lie together.

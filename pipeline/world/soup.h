@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kLargestOutline = 2'000;  ///< corners of one fac
 inline constexpr std::uint32_t kLargestFan = 256;        ///< triangles at one edge.
 inline constexpr float kLargestExtent_m = 1e6F;
 
-/// What a file says, before clean-up: faces as outlines, in W, metres.
+/// What a file says, before clean-up: faces as outlines, in W, metres. Ours.
 struct Soup {
   struct Face {
     std::uint32_t first = 0;  ///< in corners.

@@ -30,7 +30,7 @@ struct Bounds {
   }
 };
 
-/// A hierarchy of boxes over items, split by the surface-area heuristic in 16 bins (the median where that finds nothing). The items of every
+/// A hierarchy of boxes over items, split by the surface-area heuristic in 16 bins (Wald 2007) (the median where that finds nothing). The items of every
 /// node lie side by side in `order`, so that a node that is wanted as a whole is a range.
 class Tree {
  public:
