@@ -1,0 +1,154 @@
+#include "pipeline/person/face/face_descriptor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/person/face/grey_region.h"
+
+namespace cgsr::person {
+namespace {
+
+constexpr int kFace_px = 128;   // to which a face is scaled
+constexpr int kMargin_px = 26;  // around it
+constexpr int kCrop_px = kFace_px + 2 * kMargin_px;
+constexpr int kStep_px = 4;    // of the dense grid
+constexpr int kFirst_px = 28;  // its first point
+constexpr int kCell_px = 7;    // of a descriptor
+constexpr int kDirections = 8;
+constexpr int kReach = 3;    // steps by which a point may lie off
+constexpr int kSpacing = 3;  // steps between a view's points
+constexpr float kMinContrast = 0.01F;
+constexpr float kMaxShare = 0.2F;  // of a component, before the second normalisation (Lowe, 2004)
+
+static_assert(kDenseSide == (kViewSide - 1) * kSpacing + 2 * kReach + 1);
+static_assert(kFirst_px + (kDenseSide - 1) * kStep_px + 2 * kCell_px < kCrop_px);
+
+// Local mean out, local deviation to one: what is left does not depend on how bright the light is.
+cv::Mat equal_contrast(const GreyPatch& patch) {
+  cv::Mat crop(kCrop_px, kCrop_px, CV_8UC1, const_cast<std::uint8_t*>(patch.pixels.data()));
+  cv::Mat face, mean, deviation;
+  crop.convertTo(face, CV_32F, 1.0 / 255.0);
+  cv::GaussianBlur(face, mean, {}, 8.0);
+  face -= mean;
+  deviation = face.mul(face);
+  cv::GaussianBlur(deviation, deviation, {}, 8.0);
+  cv::sqrt(deviation, deviation);
+  face /= deviation + kMinContrast;
+  cv::GaussianBlur(face, face, {}, 1.6);
+  return face;
+}
+
+// Gradients shared out over directions, then over cells (a triangle: two boxes).
+std::array<cv::Mat, kDirections> direction_planes(const cv::Mat& face) {
+  std::array<cv::Mat, kDirections> planes;
+  for (cv::Mat& plane : planes) plane = cv::Mat::zeros(kCrop_px, kCrop_px, CV_32F);
+  for (int y = 1; y + 1 < kCrop_px; ++y) {
+    for (int x = 1; x + 1 < kCrop_px; ++x) {
+      const float dx = face.at<float>(y, x + 1) - face.at<float>(y, x - 1);
+      const float dy = face.at<float>(y + 1, x) - face.at<float>(y - 1, x);
+      const float size = std::sqrt(dx * dx + dy * dy);
+      float turn = std::atan2(dy, dx) * (kDirections / (2 * std::numbers::pi_v<float>));
+      if (turn < 0) turn += kDirections;
+      const int first = static_cast<int>(turn);
+      const float rest = turn - static_cast<float>(first);
+      planes[static_cast<std::size_t>(first % kDirections)].at<float>(y, x) += size * (1 - rest);
+      planes[static_cast<std::size_t>((first + 1) % kDirections)].at<float>(y, x) += size * rest;
+    }
+  }
+  for (cv::Mat& plane : planes) {
+    for (int pass = 0; pass < 2; ++pass)
+      cv::blur(plane, plane, {kCell_px, kCell_px}, cv::Point(-1, -1), cv::BORDER_CONSTANT);
+  }
+  return planes;
+}
+
+std::array<float, 16> cell_weights() {
+  std::array<float, 16> weights{};
+  for (int i = 0; i < 16; ++i) {
+    const float x = static_cast<float>(i % 4) - 1.5F;
+    const float y = static_cast<float>(i / 4) - 1.5F;
+    weights[static_cast<std::size_t>(i)] = std::exp(-(x * x + y * y) / 8);
+  }
+  return weights;
+}
+
+// One descriptor out of the planes, normalised, limited, normalised, square root taken.
+void describe_point(const std::array<cv::Mat, kDirections>& planes, int x_px, int y_px, std::uint8_t* out) {
+  static const std::array<float, 16> kWeights = cell_weights();
+  std::array<float, kSiftSize> values{};
+  float squares = 0.0F;
+  for (int cell = 0; cell < 16; ++cell) {
+    const int x = x_px + static_cast<int>(std::lround((cell % 4 - 1.5) * kCell_px));
+    const int y = y_px + static_cast<int>(std::lround((cell / 4 - 1.5) * kCell_px));
+    for (int d = 0; d < kDirections; ++d) {
+      const float value =
+          planes[static_cast<std::size_t>(d)].at<float>(y, x) * kWeights[static_cast<std::size_t>(cell)];
+      values[static_cast<std::size_t>(cell * kDirections + d)] = value;
+      squares += value * value;
+    }
+  }
+  const float norm = std::sqrt(squares) + 1e-9F;
+  float sum = 0.0F;
+  for (float& value : values) {
+    value = std::min(kMaxShare, value / norm);
+    sum += value;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out[i] = static_cast<std::uint8_t>(std::lround(255.0F * std::sqrt(values[i] / (sum + 1e-9F))));
+}
+
+int dot(const std::uint8_t* a, const std::uint8_t* b) {
+  int sum = 0;
+  for (int i = 0; i < kSiftSize; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+std::optional<FaceDescriptor> describe_face(const ImageView& image, const Box& face) {
+  if (face.empty()) return std::nullopt;
+  const double margin = face.width * kMargin_px / kFace_px;
+  const Box region{face.x - margin, face.y - margin, face.width + 2 * margin, face.height + 2 * margin};
+  const GreyPatch patch = grey_region(image, region, kCrop_px, kCrop_px);
+  if (patch.pixels.empty()) return std::nullopt;
+  const auto planes = direction_planes(equal_contrast(patch));
+  FaceDescriptor descriptor{std::vector<std::uint8_t>(std::size_t{kDenseSide} * kDenseSide * kSiftSize)};
+  std::uint8_t* out = descriptor.dense.data();
+  for (int y = 0; y < kDenseSide; ++y) {
+    for (int x = 0; x < kDenseSide; ++x, out += kSiftSize)
+      describe_point(planes, kFirst_px + x * kStep_px, kFirst_px + y * kStep_px, out);
+  }
+  return descriptor;
+}
+
+FaceView view_of(const FaceDescriptor& face) {
+  FaceView view{};
+  std::uint8_t* out = view.data();
+  for (int y = 0; y < kViewSide; ++y) {
+    for (int x = 0; x < kViewSide; ++x, out += kSiftSize) {
+      const int at = (kReach + y * kSpacing) * kDenseSide + kReach + x * kSpacing;
+      std::copy_n(face.dense.begin() + std::ptrdiff_t{at} * kSiftSize, kSiftSize, out);
+    }
+  }
+  return view;
+}
+
+void view_distances(const FaceDescriptor& face, const FaceView& view,
+                    std::array<double, kViewSide * kViewSide>& distances) {
+  constexpr double kUnit = 255.0 * 255.0;
+  for (int i = 0; i < kViewSide * kViewSide; ++i) {
+    const std::uint8_t* enrolled = view.data() + std::ptrdiff_t{i} * kSiftSize;
+    int nearest = 0;
+    for (int y = 0; y <= 2 * kReach; ++y) {
+      const int row = (i / kViewSide * kSpacing + y) * kDenseSide + i % kViewSide * kSpacing;
+      for (int x = 0; x <= 2 * kReach; ++x)
+        nearest = std::max(nearest, dot(enrolled, face.dense.data() + std::ptrdiff_t{row + x} * kSiftSize));
+    }
+    distances[static_cast<std::size_t>(i)] = 1.0 - nearest / kUnit;
+  }
+}
+
+}  // namespace cgsr::person

@@ -1,0 +1,62 @@
+#include "pipeline/person/face/face_gallery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace cgsr::person {
+namespace {
+
+constexpr std::size_t kEnoughOthers = 4;
+
+double distance_to(const FaceDescriptor& face, const std::vector<FaceView>& views) {
+  std::array<double, kViewSide * kViewSide> nearest{}, one{};
+  nearest.fill(1.0);
+  for (const FaceView& view : views) {
+    view_distances(face, view, one);
+    for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = std::min(nearest[i], one[i]);
+  }
+  return std::accumulate(nearest.begin(), nearest.end(), 0.0) / static_cast<double>(nearest.size());
+}
+
+}  // namespace
+
+void FaceGallery::enroll(Label person, const FaceView& view) {
+  auto& views = people_[person];
+  if (views.size() >= static_cast<std::size_t>(parameters_.max_views)) {
+    views.erase(views.begin() + (views.size() > 1 ? 1 : 0));
+  }
+  views.push_back(view);
+}
+
+const std::vector<FaceView>* FaceGallery::views_of(Label person) const {
+  const auto found = people_.find(person);
+  return found == people_.end() ? nullptr : &found->second;
+}
+
+FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label> without) const {
+  FaceMatch match;
+  if (face.dense.empty()) return match;
+  double second = 1.0;
+  std::size_t compared = 0;
+  for (const auto& [person, views] : people_) {
+    if (person == without || views.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
+    ++compared;
+    const double distance = distance_to(face, views);
+    if (distance < match.distance) {
+      second = match.distance;
+      match.distance = distance;
+      match.nearest = person;
+    } else {
+      second = std::min(second, distance);
+    }
+  }
+  if (compared <= kEnoughOthers) second = std::min(second, parameters_.typical_stranger);
+  match.margin = match.nearest ? second - match.distance : -1.0;
+  if (match.margin > parameters_.min_margin) match.label = match.nearest;
+  const double scale = std::max(parameters_.min_margin, 1e-6);
+  match.confidence = 1.0 - 0.5 * std::exp(-std::abs(match.margin - parameters_.min_margin) / scale);
+  return match;
+}
+
+}  // namespace cgsr::person

@@ -1,0 +1,56 @@
+#include "pipeline/person/face/grey_region.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <opencv2/imgproc.hpp>
+
+namespace cgsr::person {
+namespace {
+
+int type_of(PixelFormat format) {
+  return format == PixelFormat::kYuyv ? CV_8UC2 : format == PixelFormat::kGrey8 ? CV_8UC1 : CV_8UC3;
+}
+
+cv::Mat luma_of(const cv::Mat& pixels) {
+  cv::Mat luma;
+  if (pixels.channels() == 3) {
+    cv::cvtColor(pixels, luma, cv::COLOR_BGR2GRAY);
+  } else if (pixels.channels() == 2) {
+    cv::extractChannel(pixels, luma, 0);
+  } else {
+    luma = pixels;
+  }
+  return luma;
+}
+
+}  // namespace
+
+GreyPatch grey_region(const ImageView& image, const Box& region, int width_px, int height_px) {
+  if (image.empty() || region.empty() || width_px <= 0 || height_px <= 0) return {};
+  if (intersection(region, {0, 0, double(image.width_px), double(image.height_px)}).empty()) return {};
+  const int left = static_cast<int>(std::lround(region.x));
+  const int top = static_cast<int>(std::lround(region.y));
+  const int right = std::max(left + 1, static_cast<int>(std::lround(region.x + region.width)));
+  const int bottom = std::max(top + 1, static_cast<int>(std::lround(region.y + region.height)));
+  const int x0 = std::clamp(left, 0, image.width_px - 1);
+  const int y0 = std::clamp(top, 0, image.height_px - 1);
+  const int x1 = std::clamp(right, x0 + 1, image.width_px);
+  const int y1 = std::clamp(bottom, y0 + 1, image.height_px);
+  // OpenCV's header takes no pointer to constant pixels; nothing here writes through it.
+  const cv::Mat all(image.height_px, image.width_px, type_of(image.format), const_cast<std::uint8_t*>(image.data),
+                    static_cast<std::size_t>(image.stride_bytes));
+  cv::Mat cut = luma_of(all(cv::Range(y0, y1), cv::Range(x0, x1)));
+  if (x0 != left || y0 != top || x1 != right || y1 != bottom) {
+    cv::Mat whole;
+    cv::copyMakeBorder(cut, whole, std::max(0, y0 - top), std::max(0, bottom - y1), std::max(0, x0 - left),
+                       std::max(0, right - x1), cv::BORDER_REPLICATE);
+    cut = whole;
+  }
+  GreyPatch patch{width_px, height_px, std::vector<std::uint8_t>(static_cast<std::size_t>(width_px) * height_px)};
+  cv::Mat scaled(height_px, width_px, CV_8UC1, patch.pixels.data());
+  cv::resize(cut, scaled, scaled.size(), 0, 0, cut.cols > width_px ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return patch;
+}
+
+}  // namespace cgsr::person

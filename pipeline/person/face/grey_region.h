@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "platform/box.h"
+#include "platform/image_view.h"
+
+namespace cgsr::person {
+
+/// A small grey picture that owns its pixels; rows are tight.
+struct GreyPatch {
+  int width_px = 0;
+  int height_px = 0;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// Cuts a region out of an image and scales it: the mean of the pixels where it shrinks, linear where it grows. Pixels outside of the image
+/// are those of its border, so a face that is cut off keeps its place. The multi-resolution images of 6.2 are such regions.
+///
+/// \param image  YUYV, grey or B G R.  \param region  in its pixels; rounded to whole ones.
+/// \return empty where the image or the region is empty, or where they do not meet.
+GreyPatch grey_region(const ImageView& image, const Box& region, int width_px, int height_px);
+
+}  // namespace cgsr::person

@@ -1,0 +1,169 @@
+// Faces without faces: what describes and tells apart works on any texture, so these are drawn at random. Real ones: cgsr reproduce faces-caltech.
+
+#include <cstdint>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/person/face/face_descriptor.h"
+#include "pipeline/person/face/face_detector.h"
+#include "pipeline/person/face/face_gallery.h"
+#include "pipeline/person/face/grey_region.h"
+
+namespace cgsr::person {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr const char* kCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
+
+ImageView view_of_grey(const cv::Mat& grey) {
+  return {grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8};
+}
+
+// A texture of its own for each seed, in the middle of a grey image.
+cv::Mat portrait(unsigned seed, double gain = 1.0, cv::Point shift = {0, 0}) {
+  cv::RNG random(seed + 1);
+  cv::Mat noise(12, 12, CV_32F), texture;
+  random.fill(noise, cv::RNG::UNIFORM, 60.0, 200.0);
+  cv::resize(noise, texture, {120, 120}, 0, 0, cv::INTER_CUBIC);
+  cv::Mat image(kHeight, kWidth, CV_32F, cv::Scalar(120.0));
+  texture.copyTo(image(cv::Rect(100 + shift.x, 60 + shift.y, 120, 120)));
+  cv::Mat grey;
+  image.convertTo(grey, CV_8U, gain);
+  return grey;
+}
+const Box kFace{100, 60, 120, 120};
+
+FaceDescriptor described(const cv::Mat& grey, const Box& face = kFace) {
+  return describe_face(view_of_grey(grey), face).value_or(FaceDescriptor{});
+}
+
+FaceGallery gallery_of(int people, int views = 2, const FaceMatchParameters& parameters = {}) {
+  FaceGallery gallery(parameters);
+  for (int person = 0; person < people; ++person) {
+    for (int view = 0; view < views; ++view) {
+      gallery.enroll(person, view_of(described(portrait(static_cast<unsigned>(person), 1.0, {view, 0}))));
+    }
+  }
+  return gallery;
+}
+
+TEST(FaceGallery, NamesAnEnrolledFaceInOtherLightAndALittleOff) {
+  const auto gallery = gallery_of(6);
+  for (int person = 0; person < 6; ++person) {
+    for (const double gain : {0.25, 0.6, 1.2}) {
+      const auto match = gallery.identify(described(portrait(static_cast<unsigned>(person), gain, {4, -3})));
+      EXPECT_EQ(match.label, person) << "gain " << gain << ", margin " << match.margin;
+      EXPECT_GT(match.confidence, 0.5);
+    }
+  }
+}
+
+TEST(FaceGallery, CallsAnUnknownFaceAStrangerAndNotTheNearest) {
+  for (const int people : {1, 2, 6}) {
+    const auto gallery = gallery_of(people);
+    for (unsigned stranger = 100; stranger < 110; ++stranger) {
+      const auto match = gallery.identify(described(portrait(stranger)));
+      EXPECT_EQ(match.label, std::nullopt) << people << " people, margin " << match.margin;
+      EXPECT_NE(match.nearest, std::nullopt);
+    }
+  }
+}
+
+TEST(FaceGallery, LeavesOutWhoHasASingleView) {
+  auto gallery = gallery_of(3, 1);
+  EXPECT_EQ(gallery.identify(described(portrait(0))).label, std::nullopt);
+  gallery.enroll(0, view_of(described(portrait(0))));
+  EXPECT_EQ(gallery.identify(described(portrait(0))).label, 0);
+}
+
+TEST(FaceGallery, ForgetsAPersonAndKeepsAtMostSoManyViews) {
+  auto gallery = gallery_of(2, 30);
+  ASSERT_NE(gallery.views_of(1), nullptr);
+  EXPECT_EQ(gallery.views_of(1)->size(), 6U);
+  EXPECT_TRUE(gallery.forget(1));
+  EXPECT_FALSE(gallery.forget(1));
+  EXPECT_EQ(gallery.views_of(1), nullptr);
+  EXPECT_EQ(gallery.identify(described(portrait(1))).label, std::nullopt);
+}
+
+TEST(FaceGallery, NamesOneOfAThousand) {
+  FaceMatchParameters parameters;
+  parameters.min_views = 1;
+  FaceGallery gallery(parameters);
+  const FaceView other = view_of(described(portrait(7)));
+  for (int person = 0; person < 1000; ++person) {
+    FaceView view = other;
+    std::mt19937 random(static_cast<unsigned>(person));
+    for (std::uint8_t& value : view) value = static_cast<std::uint8_t>(value / 2 + random() % 24);
+    gallery.enroll(person, view);
+  }
+  gallery.enroll(1000, view_of(described(portrait(3))));
+  EXPECT_EQ(gallery.identify(described(portrait(3))).label, 1000);
+  EXPECT_EQ(gallery.people(), 1001U);
+}
+
+TEST(FaceDescriptor, OfAnEmptyCropOrOneOutsideIsNothing) {
+  const cv::Mat grey = portrait(0);
+  EXPECT_FALSE(describe_face(view_of_grey(grey), {}));
+  EXPECT_FALSE(describe_face(view_of_grey(grey), {400, 10, 50, 50}));
+  EXPECT_FALSE(describe_face({}, kFace));
+  EXPECT_EQ(gallery_of(2).identify({}).label, std::nullopt);
+}
+
+TEST(FaceDescriptor, OfAFaceAtTheBorderIsFinite) {
+  const cv::Mat grey = portrait(0);
+  for (const Box& face : {Box{-30, -20, 100, 100}, Box{260, 180, 100, 100}, Box{0, 0, 3, 3}}) {
+    const auto descriptor = describe_face(view_of_grey(grey), face);
+    ASSERT_TRUE(descriptor);
+    EXPECT_EQ(descriptor->dense.size(), std::size_t{kDenseSide} * kDenseSide * kSiftSize);
+  }
+}
+
+TEST(GreyRegion, IsTheMeanWhereItShrinksAndTheBorderOutside) {
+  cv::Mat yuyv(4, 4, CV_8UC2, cv::Scalar(0, 128));
+  yuyv.row(0).setTo(cv::Scalar(100, 0));
+  yuyv.row(1).setTo(cv::Scalar(50, 0));
+  const ImageView image{yuyv.data, 4, 4, static_cast<std::ptrdiff_t>(yuyv.step), PixelFormat::kYuyv};
+  const GreyPatch half = grey_region(image, {0, 0, 4, 4}, 2, 2);
+  EXPECT_EQ(half.pixels, (std::vector<std::uint8_t>{75, 75, 0, 0}));
+  const GreyPatch above = grey_region(image, {0, -2, 4, 4}, 4, 4);
+  EXPECT_EQ(above.pixels[0], 100);
+  EXPECT_EQ(above.pixels[4], 100);
+  EXPECT_EQ(above.pixels[12], 50);
+  EXPECT_TRUE(grey_region(image, {10, 10, 4, 4}, 4, 4).pixels.empty());
+}
+
+std::string cascade_text() {
+  std::ifstream in(kCascade);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(FaceDetector, SaysWhatIsWrongWithACascade) {
+  for (const char* text : {"", "nothing", "<?xml version=\"1.0\"?><opencv_storage></opencv_storage>",
+                           "<?xml version=\"1.0\"?><opencv_storage><cascade><a>1</a></cascade></opencv_storage>"}) {
+    const auto detector = FaceDetector::from_cascade(text, {});
+    ASSERT_FALSE(detector) << text;
+    EXPECT_NE(detector.error().message.find("cascade"), std::string::npos);
+  }
+}
+
+TEST(FaceDetector, FindsNothingInAnEmptyOrPlainImage) {
+  auto detector = FaceDetector::from_cascade(cascade_text(), {});
+  ASSERT_TRUE(detector) << detector.error().message;
+  EXPECT_TRUE(detector->find_all({}).empty());
+  EXPECT_FALSE(detector->find_near({}, kFace));
+  const cv::Mat plain(480, 640, CV_8UC1, cv::Scalar(90));
+  EXPECT_TRUE(detector->find_all(view_of_grey(plain)).empty());
+  EXPECT_FALSE(detector->find_near(view_of_grey(plain), {600, 440, 80, 80}));
+  EXPECT_FALSE(detector->find_near(view_of_grey(plain), {900, 440, 80, 80}));
+}
+
+}  // namespace
+}  // namespace cgsr::person
