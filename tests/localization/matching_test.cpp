@@ -156,10 +156,10 @@ TEST(ASegmentTable, HearsLittleOfManyShortEdges) {
   }
   border.finish();
   print.finish();
-  EXPECT_FLOAT_EQ(border.telling_length(), 120.0F);
+  EXPECT_FLOAT_EQ(border.weighted_length(), 120.0F);
   EXPECT_FLOAT_EQ(print.whole_length(), 120.0F) << "the solution and the search take them as they are";
-  EXPECT_LT(print.telling_length(), 0.2F * border.telling_length());
-  EXPECT_GT(print.telling_length(), 0.0F);
+  EXPECT_LT(print.weighted_length(), 0.2F * border.weighted_length());
+  EXPECT_GT(print.weighted_length(), 0.0F);
 }
 
 }  // namespace
