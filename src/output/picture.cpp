@@ -1,10 +1,16 @@
 #include "src/output/picture.h"
 
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
 #include <fmt/core.h>
 #include <opencv2/imgcodecs.hpp>
 
-namespace cgsr::app {
+#include "platform/replace_file.h"
 
+namespace cgsr::app {
 Result<cv::Mat> read_picture(const std::string& file, const geometry::Camera& camera, const std::string& camera_file) {
   cv::Mat picture;
   try {
@@ -21,11 +27,14 @@ Result<cv::Mat> read_picture(const std::string& file, const geometry::Camera& ca
 }
 
 Result<void> write_picture(const std::string& file, const cv::Mat& picture) {
+  std::vector<std::uint8_t> bytes;
   try {
-    if (cv::imwrite(file, picture)) return {};
+    if (cv::imencode(std::filesystem::path(file).extension().string(), picture, bytes)) {
+      return replace_file(file, {std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())});
+    }
   } catch (const cv::Exception&) {  // an ending that it does not know
   }
-  return fail(fmt::format("{}: cannot be written as an image", file));
+  return fail(fmt::format("{}: cannot be written as an image: expected a name that ends in .png or .jpg", file));
 }
 
 }  // namespace cgsr::app

@@ -2,9 +2,10 @@
 
 #include <cerrno>
 #include <cstring>
-#include <system_error>
 
 #include <fmt/core.h>
+
+#include "platform/replace_file.h"
 
 namespace cgsr::app {
 namespace {
@@ -30,27 +31,7 @@ Result<void> TextFile::add_line(std::string_view line) {
 }
 
 Result<void> write_file(const std::filesystem::path& path, std::string_view text) {
-  auto beside = path;
-  beside += ".part";
-  errno = 0;
-  {
-    std::ofstream stream(beside, std::ios::trunc | std::ios::binary);
-    stream << text << std::flush;
-    if (!stream) {
-      const std::string why = cause();
-      std::error_code ignored;
-      std::filesystem::remove(beside, ignored);
-      return fail(fmt::format("{}: cannot be written: {}", path.string(), why));
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(beside, path, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    return fail(fmt::format("{}: cannot be put in place: {}", path.string(), error.message()));
-  }
-  return {};
+  return replace_file(path, {text});
 }
 
 }  // namespace cgsr::app

@@ -27,7 +27,7 @@ class TextFile {
   std::ofstream stream_;
 };
 
-/// Writes a whole file beside `path` and renames it there, so that nobody ever reads half of it.
+/// Writes a whole file so that nobody ever reads half of it (platform/replace_file.h).
 Result<void> write_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace cgsr::app

@@ -4,13 +4,15 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "platform/replace_file.h"
 
 namespace cgsr::color {
 namespace {
@@ -157,16 +159,7 @@ Result<void> save_model(const ColorModel& model, const std::string& path) {
                          {"payload", json::binary(payload)}};
   const Bytes bytes = json::to_cbor(envelope);
 
-  const std::string beside = path + ".part";
-  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file || std::rename(beside.c_str(), path.c_str()) != 0) {
-    const int reason = errno;
-    std::remove(beside.c_str());
-    return fail(fmt::format("{}: the model cannot be written: {}", path, std::strerror(reason)));
-  }
-  return {};
+  return replace_file(path, {std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size())});
 }
 
 Result<ColorModel> load_model(const std::string& path) {

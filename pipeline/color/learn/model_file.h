@@ -11,7 +11,7 @@ namespace cgsr::color {
 inline constexpr int kModelVersion = 1;
 
 /// Writes a model: CBOR {format, version, sha256, payload}, the payload again CBOR. Learn time only, never on the frame path.
-/// The file appears whole or not at all: it is written beside its place and renamed.
+/// The file appears whole or not at all: platform/replace_file.h.
 /// It holds the histograms that Alg. 3.1 returns, and the samples. The format is ours.
 /// \return what could not be written, with the path and the system's reason.
 Result<void> save_model(const ColorModel& model, const std::string& path);
