@@ -312,6 +312,7 @@ TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
     RandomNumbers random(13);
     double before_m = 0.0;
     double after_m = 0.0;
+    double moved_m = 0.0;
     constexpr int kTrials = 8;
     for (int trial = 0; trial < kTrials; ++trial) {
       const Prior prior = drawn_prior(truth, kTracking, random);
@@ -327,7 +328,9 @@ TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
       }
       before_m += error_of(truth, prior.X_WC).position_m / kTrials;
       after_m += error_of(truth, answer.X_WC).position_m / kTrials;
+      moved_m += error_of(prior.X_WC, answer.X_WC).position_m / kTrials;
     }
+    EXPECT_GT(moved_m, 0.005) << static_cast<int>(method) << ": a method that leaves the prior as it is corrects nothing";
     EXPECT_LT(after_m, left * before_m) << static_cast<int>(method) << ": it was " << before_m << " m off before";
   }
 }
