@@ -16,7 +16,7 @@ struct GreyPatch {
 };
 
 /// Cuts a region out of an image and scales it: the mean of the pixels where it shrinks, linear where it grows. Pixels outside of the image
-/// are those of its border, so a face that is cut off keeps its place. The multi-resolution images of 6.2 are such regions.
+/// are those of its border, so a face that is cut off keeps its place. The multi-resolution images of section 6.2 are such regions.
 ///
 /// \param image  YUYV, grey or B G R.  \param region  in its pixels; rounded to whole ones.
 /// \return empty where the image or the region is empty, or where they do not meet.
