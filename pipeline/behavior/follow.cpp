@@ -77,7 +77,7 @@ std::string_view text(FollowReason reason) {
 }
 
 Follow::Follow(const FollowParameters& parameters, std::optional<LearnedSize> learned)
-    : parameters_(parameters), reference_distance_m_(parameters.distance_m) {
+    : parameters_(parameters), reference_distance_m_(parameters.distance_m), motion_(parameters.confirm_s) {
   const bool stated =
       learned && learned->width_px > 0.0 && learned->height_px > 0.0 && parameters.learned_distance_m > 0.0;
   if (!stated) return;
@@ -87,6 +87,7 @@ Follow::Follow(const FollowParameters& parameters, std::optional<LearnedSize> le
 
 FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
   elapsed = std::max(elapsed, Duration::zero());
+  motion_.turned(goal_.left_radps, to_seconds(elapsed));
   FollowDecision decision;
   decision.reason = judge(sighting);
   if (decision.reason == FollowReason::kSeen) {
@@ -95,8 +96,10 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
     ever_seen_ = true;
     unseen_for_ = {};
     last_bearing_rad_ = decision.bearing_rad;
+    motion_.seen(decision.bearing_rad);
   } else {
     decision.state = state_when_unseen(elapsed);
+    if (to_seconds(unseen_for_) > parameters_.max_box_age_s) motion_.lost();
     decision.bearing_rad = last_bearing_rad_;
     decision.halt = true;
   }
@@ -139,10 +142,17 @@ FollowState Follow::state_when_unseen(Duration elapsed) {
   return FollowState::kLost;
 }
 
+// Positive: to the left. A loss without anything confirmed before it leaves the last bearing.
+double Follow::search_side() const {
+  if (!motion_.confirmed()) return last_bearing_rad_;
+  const double rate_radps = motion_.rate_radps();
+  return std::abs(rate_radps) >= parameters_.min_motion_radps ? rate_radps : motion_.bearing_rad();
+}
+
 Velocity Follow::wanted(const FollowDecision& decision) const {
   Velocity velocity;
   if (decision.state == FollowState::kSearching) {
-    velocity.left_radps = std::copysign(parameters_.search_turn_radps, last_bearing_rad_);
+    velocity.left_radps = std::copysign(parameters_.search_turn_radps, search_side());
   }
   if (decision.state != FollowState::kFollowing) return velocity;
 

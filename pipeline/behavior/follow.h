@@ -4,6 +4,7 @@
 #include <optional>
 #include <string_view>
 
+#include "pipeline/behavior/confirmed_motion.h"
 #include "pipeline/behavior/follow_parameters.h"
 #include "pipeline/behavior/velocity.h"
 #include "platform/box.h"
@@ -32,7 +33,7 @@ enum class FollowState : std::uint8_t {
   kWaiting,    ///< never seen yet: stands.
   kFollowing,  ///< seen.
   kStanding,   ///< lost: comes to a stop and stands for search_after_s.
-  kSearching,  ///< turns on the spot towards the side where it was last seen, for max_search_s.
+  kSearching,  ///< turns on the spot towards where it moved, or the side where it was (ConfirmedMotion), for max_search_s.
   kLost,       ///< given up: stands until it is seen again.
 };
 
@@ -80,12 +81,14 @@ class Follow {
   FollowReason judge(const Sighting& sighting) const;
   void measure(const Sighting& sighting, FollowDecision& decision);
   FollowState state_when_unseen(Duration elapsed);
+  [[nodiscard]] double search_side() const;
   Velocity wanted(const FollowDecision& decision) const;
 
   FollowParameters parameters_;
   std::optional<LearnedSize> reference_;
   double reference_distance_m_;
   Velocity goal_;
+  ConfirmedMotion motion_;
   double last_bearing_rad_ = 0.0;
   Duration unseen_for_{};
   bool ever_seen_ = false;

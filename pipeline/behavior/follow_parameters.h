@@ -23,6 +23,8 @@ struct FollowParameters {
   double search_after_s = 1.0;
   double max_search_s = 20.0;
   double search_turn_radps = 0.4;
+  double confirm_s = 0.5;
+  double min_motion_radps = 0.1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -59,6 +61,13 @@ struct FollowParameters {
     visit.number("max_search_s", self.max_search_s, {0.0, 120.0}, "s",
                  "The time that the robot searches before it gives the object up.");
     visit.number("search_turn_radps", self.search_turn_radps, {0.0, 1.0}, "rad/s", "The turn rate while searching.");
+    visit.number(
+        "confirm_s", self.confirm_s, {0.0, 5.0}, "s",
+        "A box decides the side of a search only when the object was followed for this long after it; what was "
+        "followed in the last moments before a loss may have been a look-alike.");
+    visit.number("min_motion_radps", self.min_motion_radps, {0.0, 5.0}, "rad/s",
+                 "The search turns towards the object's direction of motion where that was at least this fast; "
+                 "otherwise towards the side on which the object was.");
   }
 };
 

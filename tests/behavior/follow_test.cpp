@@ -148,10 +148,61 @@ TEST(Follow, LostItStandsThenSearchesThenGivesUp) {
   EXPECT_EQ(repeat(follow, nothing(), 3000).state, FollowState::kLost);
 }
 
-TEST(Follow, SearchesOnTheSideWhereItWasSeenLast) {
+TEST(Follow, SearchesOnTheSideWhereItWasWhenItStoodStill) {
+  FollowParameters still;
+  still.turn_per_s = 0.0;
+  Follow follow(still, {});
+  repeat(follow, seen(kCentre_px - 100.0), 60);
+  EXPECT_EQ(repeat(follow, nothing(), 90).goal.left_radps, 0.4);
+}
+
+TEST(Follow, SearchesOnTheSideOfTheOnlySightingThereWas) {
   Follow follow({}, {});
-  repeat(follow, seen(kCentre_px + 100.0), 30);
   repeat(follow, seen(kCentre_px - 100.0), 1);
+  EXPECT_EQ(repeat(follow, nothing(), 90).goal.left_radps, 0.4) << "nothing better is known";
+}
+
+/// Seen on the left, going to the right at 40 px per second.
+void follow_to_the_right(Follow& follow) {
+  for (int image = 0; image < 90; ++image) follow.decide(seen(kCentre_px - 200.0 + 1.33 * image), kImagePeriod);
+}
+
+TEST(Follow, SearchesInTheDirectionOfMotion) {
+  FollowParameters still;
+  still.turn_per_s = 0.0;
+  still.min_motion_radps = 0.05;
+  Follow follow(still, {});
+  follow_to_the_right(follow);
+  EXPECT_EQ(repeat(follow, nothing(), 90).goal.left_radps, -0.4) << "though it was on the left";
+}
+
+// A robot that turns with the object sees it always at the same bearing.
+TEST(ConfirmedMotion, TheTurnOfTheRobotCountsAsMotionOfTheObject) {
+  ConfirmedMotion motion(0.5);
+  for (int image = 0; image < 90; ++image) {
+    motion.turned(-0.4, 1.0 / 30.0);
+    motion.seen(0.05);
+  }
+  EXPECT_NEAR(motion.rate_radps(), -0.4, 0.01);
+  EXPECT_EQ(motion.bearing_rad(), 0.05);
+}
+
+// A twin on the other side that is taken for the object for six images, before the loss or after it, leaves the direction as it was.
+TEST(Follow, ATwinThatSwapsSidesDoesNotTurnTheSearch) {
+  for (const int images_lost : {0, 1, 12, 45, 90}) {
+    Follow follow({}, {});
+    repeat(follow, seen(kCentre_px + 100.0), 120);
+    repeat(follow, nothing(), images_lost);
+    EXPECT_EQ(repeat(follow, seen(kCentre_px - 150.0), 6).state, FollowState::kFollowing);
+    EXPECT_EQ(repeat(follow, nothing(), 90).goal.left_radps, -0.4) << images_lost << " images lost before it";
+  }
+}
+
+TEST(Follow, WhatIsFollowedLongEnoughIsTheObject) {
+  Follow follow({}, {});
+  repeat(follow, seen(kCentre_px + 100.0), 120);
+  repeat(follow, nothing(), 45);
+  repeat(follow, seen(kCentre_px - 150.0), 60);
   EXPECT_EQ(repeat(follow, nothing(), 90).goal.left_radps, 0.4);
 }
 
