@@ -38,16 +38,16 @@ class VisionLoop {
   /// What the decision about the last image asks of the next one; before the first: what its task begins with.
   [[nodiscard]] stages::Requests requests();
 
-  /// \return a stage's worker; null where the robot has none.
-  template <class Worker>
-  [[nodiscard]] Worker* worker() {
-    return std::get<runtime::Stage<Worker>>(stages_).worker();
-  }
-
  private:
   template <class Worker, class... Inputs>
   const auto& run(const Inputs&... inputs) {
     return runner_.run(std::get<runtime::Stage<Worker>>(stages_), inputs...);
+  }
+
+  /// \return a stage's worker; null where the robot has none.
+  template <class Worker>
+  [[nodiscard]] Worker* worker() {
+    return std::get<runtime::Stage<Worker>>(stages_).worker();
   }
 
   runtime::StageRunner& runner_;

@@ -109,18 +109,16 @@ void ProbesStage::observe(const ImageView& image, const PlacedRobot* robot, Lamp
   const auto observation = observer_.observe(image);
   report.observation = observation.status;
   report.cone_missing = observation.missing != 0;
-  const auto lamps = illumination::locate_lamps(observer_.board(), lamp_, observation);
-  if (!report.cone_missing) report.single_image.status = lamps.status;
-  if (lamps.count > 0 && !report.cone_missing) report.single_image = lamps.lamp[0];
   report.pose_known = robot != nullptr;
-  if (robot != nullptr && !report.cone_missing)
-    report.change = filter_.update(observation, robot->X_WR, robot->covariance);
-  for (int i = 0; i < filter_.count(); ++i) {
-    if (!filter_.lamp(i).steady) continue;
-    if (!report.known) report.lamp = filter_.lamp(i);
-    report.known = true;
-    ++report.lamps;
+  if (!report.cone_missing) {
+    report.single_image = illumination::locate_lamps(observer_.board(), lamp_, observation);
+    if (robot != nullptr) report.change = filter_.update(observation, robot->X_WR, robot->covariance);
   }
+  for (int i = 0; i < filter_.count(); ++i) {
+    if (filter_.lamp(i).steady) report.lamps.add(filter_.lamp(i));
+  }
+  report.known = report.lamps.count > 0;
+  if (report.known) report.lamp = report.lamps.lamp.front();
   // Another lamp is another question.
   if (report.change.gone && !report.known) room_lamp_check_.reopen();
 }

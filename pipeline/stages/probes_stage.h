@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -16,17 +18,25 @@
 
 namespace cgsr::stages {
 
+/// The lamps that many images agree on.
+struct KnownLamps {
+  std::array<illumination::KnownLamp, illumination::LampFilter::kMostLamps> lamp;
+  int count = 0;
+
+  void add(const illumination::KnownLamp& known) { lamp[static_cast<std::size_t>(count++)] = known; }
+};
+
 /// What one image said about lamps, and what all images together say.
 struct LampReport {
   bool has_board = false;  ///< else nothing below means anything.
   illumination::ObservationStatus observation = illumination::ObservationStatus::kNoImage;
   bool cone_missing = false;  ///< a probe of the board was not found: nothing here is trusted in this image.
-  illumination::LampEstimate single_image;  ///< the first lamp of this image alone, robot frame.
-  bool pose_known = false;                  ///< the robot's pose was known: this image counts in what follows.
+  illumination::LampEstimates single_image;  ///< the lamps of this image alone, robot frame; none: why.
+  bool pose_known = false;                   ///< the robot's pose was known: this image counts in what follows.
   illumination::LampChange change;
   bool known = false;                      ///< there is a lamp that many images agree on.
   illumination::KnownLamp lamp;            ///< the best known one, world frame; read only when known.
-  int lamps = 0;                           ///< how many are known so.
+  KnownLamps lamps;                        ///< every one that is known so, the best known first.
   illumination::CheckReport probes_check;  ///< the probe lamp switched: what that says of board and probes.
   illumination::CheckReport lamp_proof;    ///< the room lamp switched: what that says of the shadows.
   bool requests_probe_lamp = false;        ///< the level that a check requires of the probe lamp's line,

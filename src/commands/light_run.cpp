@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,16 +18,14 @@ using illumination::ObservationStatus;
 
 constexpr const char* kColumns = "frame,found,reason,x,y,z,probes,sigma_m";
 
-constexpr std::string_view kConeMissing = "a cone is missing";
-
-/// Of geometry::moved(X_WR, step), where a row states sigmas; else zero: the filter knows no pose better than [lamp].pose_sigma_* says.
-geometry::Matrix6d covariance_of(const PoseRow& pose) {
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+/// The robot where a row says; its covariance is zero where the row states no sigmas: the filter knows no pose better than [lamp].min_pose_sigma_*.
+stages::PlacedRobot placed(const PoseRow& pose) {
+  stages::PlacedRobot robot{pose.X, geometry::Matrix6d::Zero()};
   const double place = pose.sigma_m.value_or(0.0);
   const double turn = pose.sigma_rad.value_or(0.0);
-  covariance.diagonal().head<3>().setConstant(place * place);
-  covariance.diagonal().tail<3>().setConstant(turn * turn);
-  return covariance;
+  robot.covariance.diagonal().head<3>().setConstant(place * place);
+  robot.covariance.diagonal().tail<3>().setConstant(turn * turn);
+  return robot;
 }
 
 std::string unanswered_row(int frame, std::string_view reason) {
@@ -40,8 +39,7 @@ LightRun::LightRun(const LightOptions& options, LightSetup setup, std::vector<Po
       config_(setup.config),
       input_(std::move(setup.input)),
       poses_(std::move(poses)),
-      observer_(setup.board, config_.probes, config_.lamp.height_m - setup.board.X_RB.translation().z()),
-      filter_(setup.board, config_.lamp),
+      stage_(setup.board, config_.probes, config_.lamp, setup.board.X_RB * setup.board.X_BC),
       causes_(static_cast<std::size_t>(ObservationStatus::kSaturated) + 1) {}
 
 Result<LightRun> LightRun::open(const LightOptions& options) {
@@ -68,37 +66,34 @@ Result<bool> LightRun::step() {
     rows_ += unanswered_row(frame, "unreadable");
     return true;
   }
+  const PoseRow* const pose = pose_of(frame);
+  const auto robot = pose != nullptr ? std::optional(placed(*pose)) : std::nullopt;
   count_stage_begin();
-  const auto observation = observer_.observe(next.image.view());
-  count_stage_end("probes");
-  ++causes_[static_cast<std::size_t>(observation.status)];
-  const PoseRow* pose = pose_of(frame);
-  const geometry::Pose* X_WR = pose != nullptr ? &pose->X : nullptr;
-  without_a_cone_ += observation.missing != 0 ? 1 : 0;
-  count_stage_begin();
-  const auto lamps = illumination::locate_lamps(observer_.board(), config_.lamp, observation);
-  if (X_WR != nullptr) filter_.update(observation, *X_WR, covariance_of(*pose));
-  count_stage_end("lamp");
+  report_ = stage_.update(next.image.view(), robot ? &*robot : nullptr);
+  count_stage_end(stages::ProbesStage::kName.data());
   count_image_end();
+  ++causes_[static_cast<std::size_t>(report_.observation)];
+  without_a_cone_ += report_.cone_missing ? 1 : 0;
+  if (add_rows(frame, robot ? &robot->X_WR : nullptr)) {
+    ++answered_;
+  } else {
+    last_cause_ = reason_of(report_);
+    rows_ += unanswered_row(frame, last_cause_);
+  }
+  return true;
+}
+
+bool LightRun::add_rows(int frame, const geometry::Pose* X_WR) {
   bool found = false;
-  for (int i = 0; i < lamps.count; ++i) {
-    const auto& lamp = lamps.lamp[static_cast<std::size_t>(i)];
+  for (int i = 0; i < report_.single_image.count; ++i) {
+    const auto& lamp = report_.single_image.lamp[static_cast<std::size_t>(i)];
     if (lamp.status != LampStatus::kFound) continue;
     found = true;
     const Eigen::Vector3d p = X_WR != nullptr ? Eigen::Vector3d(*X_WR * lamp.p_RL) : lamp.p_RL;
-    rows_ += fmt::format("{},1,{},{:.4f},{:.4f},{:.4f},{},{:.4f}\n", frame,
-                         observation.missing != 0 ? kConeMissing : "", p.x(), p.y(), p.z(),
+    rows_ += fmt::format("{},1,,{:.4f},{:.4f},{:.4f},{},{:.4f}\n", frame, p.x(), p.y(), p.z(),
                          std::popcount(static_cast<unsigned>(lamp.probes)), std::sqrt(lamp.covariance.trace()));
   }
-  if (!found) {
-    const bool seen = observation.status == ObservationStatus::kSeen;
-    last_cause_ = observation.missing != 0 && observation.status != ObservationStatus::kSaturated ? kConeMissing
-                  : seen ? illumination::to_string(lamps.status)
-                         : illumination::to_string(observation.status);
-    rows_ += unanswered_row(frame, last_cause_);
-  }
-  answered_ += found ? 1 : 0;
-  return true;
+  return found;
 }
 
 const PoseRow* LightRun::pose_of(int frame) const {
@@ -121,10 +116,9 @@ std::vector<std::string> LightRun::summary() const {
     lines.push_back(
         fmt::format("{:6} images: {}", causes_[cause], illumination::to_string(static_cast<ObservationStatus>(cause))));
   }
-  if (without_a_cone_ > 0) lines.push_back(fmt::format("{:6} images: {}", without_a_cone_, kConeMissing));
-  for (int i = 0; i < filter_.count(); ++i) {
-    const auto& lamp = filter_.lamp(i);
-    if (!lamp.steady) continue;
+  if (without_a_cone_ > 0) lines.push_back(fmt::format("{:6} images: a cone is missing", without_a_cone_));
+  for (int i = 0; i < report_.lamps.count; ++i) {
+    const auto& lamp = report_.lamps.lamp[static_cast<std::size_t>(i)];
     const Eigen::Vector3d sigma = lamp.covariance.diagonal().cwiseSqrt();
     lines.push_back(fmt::format(
         "lamp {} at ({:.3f}, {:.3f}, {:.3f}) m in the world, sigma ({:.3f}, {:.3f}, {:.3f}), seen in {} images", i,

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/illumination/lamp_filter.h"
+#include "pipeline/stages/probes_stage.h"
 #include "platform/error.h"
 #include "src/commands/light_setup.h"
 #include "src/input/image_input.h"
@@ -21,7 +21,7 @@ struct LightOptions {
   std::string csv;
 };
 
-/// The work of `cgsr light`, an image at a time.
+/// The work of `cgsr light`: the stage that finds lamps, an image at a time.
 class LightRun {
  public:
   static Result<LightRun> open(const LightOptions& options);
@@ -39,19 +39,21 @@ class LightRun {
   [[nodiscard]] std::vector<std::string> summary() const;
 
  private:
-  /// \return the row of the robot's pose of an image; null: nobody said.
-  [[nodiscard]] const PoseRow* pose_of(int frame) const;
-
   LightRun(const LightOptions& options, LightSetup setup, std::vector<PoseRow> poses);
+
+  /// \return the row of the robot's pose of an image; null: there is none.
+  [[nodiscard]] const PoseRow* pose_of(int frame) const;
+  /// Adds an image's rows. \return whether it shows a lamp.
+  bool add_rows(int frame, const geometry::Pose* X_WR);
 
   LightOptions options_;
   config::Light config_;
   ImageInput input_;
   std::vector<PoseRow> poses_;
-  illumination::ProbeObserver observer_;
-  illumination::LampFilter filter_;
-  std::vector<int> causes_;  // images by ObservationStatus
-  int without_a_cone_ = 0;   // images in which a probe of the board was not found
+  stages::ProbesStage stage_;
+  stages::LampReport report_;  // of the last image
+  std::vector<int> causes_;    // images by ObservationStatus
+  int without_a_cone_ = 0;     // images in which a probe of the board was not found
   std::string rows_;
   std::string_view last_cause_;
   std::vector<std::string> problems_;

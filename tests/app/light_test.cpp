@@ -93,7 +93,9 @@ TEST_F(LightCommandFault, EachBadInputHasItsName) {
   photograph_changed("has_board = true", "has_board = true\n\n[robot.board]\ncones = 1", "one-cone.png");
   const auto one_cone = light("one-cone.png", {"--csv", scratch_ / "one-cone.csv"});
   EXPECT_THAT(one_cone.output, HasSubstr("1 images: a cone is missing"));
-  EXPECT_THAT(read_text(scratch_ / "one-cone.csv"), HasSubstr("a cone is missing"));
+  EXPECT_EQ(one_cone.exit_code, 1) << "nothing is trusted in such an image, as the robot's own stage has it";
+  EXPECT_THAT(one_cone.errors, HasSubstr("a cone is missing"));
+  EXPECT_THAT(read_text(scratch_ / "one-cone.csv"), HasSubstr("0,0,a cone is missing,,,,,"));
 
   photograph_changed("lumens = 2600.0", "lumens = 100000.0", "bright.png");
   const auto bright = light("bright.png");
