@@ -19,8 +19,11 @@ int run_command_line(int argc, char** argv) {
 
   int exit_code = kSuccess;
   add_run_command(app, exit_code);
+  add_profile_command(app, exit_code);
+  add_top_command(app, exit_code);
   add_check_command(app, exit_code);
   add_config_command(app, exit_code);
+  add_devices_command(app, exit_code);
   add_calibrate_command(app, exit_code);
   add_learn_command(app, exit_code);
   add_track_command(app, exit_code);
@@ -30,6 +33,7 @@ int run_command_line(int argc, char** argv) {
   add_reproduce_command(app, exit_code);
   add_shade_command(app, exit_code);
   add_sim_command(app, exit_code);
+  add_completion_command(app, exit_code);
 
   try {
     app.parse(argc, argv);

@@ -25,12 +25,6 @@ int exchange(VideoDevice& device, unsigned long request, std::uint32_t id, std::
   return error;
 }
 
-std::optional<std::int32_t> read_back(VideoDevice& device, std::uint32_t id) {
-  std::int32_t value = 0;
-  if (exchange(device, VIDIOC_G_EXT_CTRLS, id, value) != 0) return std::nullopt;
-  return value;
-}
-
 /// \return the range of the control; nothing when the camera has none, or has switched it off for good.
 std::optional<v4l2_queryctrl> range_of(VideoDevice& device, std::uint32_t id) {
   v4l2_queryctrl query{};
@@ -48,7 +42,7 @@ std::string apply_one(VideoDevice& device, const ControlWish& wish) {
   }
   std::int32_t value = std::clamp(wish.value, range->minimum, range->maximum);
   const int error = exchange(device, VIDIOC_S_EXT_CTRLS, wish.id, value);
-  const auto now = read_back(device, wish.id);
+  const auto now = control_value(device, wish.id);
   if (now && *now == wish.value) return {};
   if (!wish.required && !now) return {};
   return fmt::format("{}: {} was requested, {} took effect{} (the camera offers {} to {} in steps of {})", wish.name,
@@ -57,7 +51,50 @@ std::string apply_one(VideoDevice& device, const ControlWish& wish) {
                      range->maximum, range->step);
 }
 
+constexpr int kMaxControls = 256;
+
+bool has_a_number(const v4l2_queryctrl& query) {
+  return query.type == V4L2_CTRL_TYPE_INTEGER || query.type == V4L2_CTRL_TYPE_BOOLEAN ||
+         query.type == V4L2_CTRL_TYPE_MENU;
+}
+
 }  // namespace
+
+std::optional<std::int32_t> control_value(VideoDevice& device, std::uint32_t id) {
+  std::int32_t value = 0;
+  if (exchange(device, VIDIOC_G_EXT_CTRLS, id, value) != 0) return std::nullopt;
+  return value;
+}
+
+std::vector<OfferedControl> offered_controls(VideoDevice& device) {
+  std::vector<OfferedControl> controls;
+  v4l2_queryctrl query{};
+  for (int i = 0; i < kMaxControls; ++i) {
+    query.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
+    if (device.control(VIDIOC_QUERYCTRL, &query) != 0) break;
+    if ((query.flags & V4L2_CTRL_FLAG_DISABLED) != 0 || !has_a_number(query)) continue;
+    const auto* end = std::find(std::cbegin(query.name), std::cend(query.name), std::uint8_t{0});
+    controls.push_back({.id = query.id,
+                        .name = std::string(std::cbegin(query.name), end),
+                        .minimum = query.minimum,
+                        .maximum = query.maximum,
+                        .step = query.step,
+                        .value = control_value(device, query.id).value_or(query.default_value)});
+  }
+  return controls;
+}
+
+void set_automatic(VideoDevice& device) {
+  // UVC cameras know no exposure but the manual one and the one under aperture priority.
+  for (std::int32_t automatic : {V4L2_EXPOSURE_APERTURE_PRIORITY, V4L2_EXPOSURE_AUTO}) {
+    std::int32_t value = automatic;
+    if (exchange(device, VIDIOC_S_EXT_CTRLS, V4L2_CID_EXPOSURE_AUTO, value) == 0) break;
+  }
+  for (const std::uint32_t id : {V4L2_CID_AUTOGAIN, V4L2_CID_AUTO_WHITE_BALANCE}) {
+    std::int32_t on = 1;
+    (void)exchange(device, VIDIOC_S_EXT_CTRLS, id, on);
+  }
+}
 
 std::vector<ControlWish> wishes_of(const V4l2Parameters& parameters) {
   std::vector<ControlWish> wishes;
@@ -97,7 +134,7 @@ std::vector<std::string> apply_controls(VideoDevice& device, const std::vector<C
 
 bool all_stand(VideoDevice& device, const std::vector<ControlWish>& wishes) {
   return std::all_of(wishes.begin(), wishes.end(), [&device](const ControlWish& wish) {
-    const auto value = read_back(device, wish.id);
+    const auto value = control_value(device, wish.id);
     return !value || *value == wish.value;
   });
 }

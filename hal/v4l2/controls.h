@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,22 @@ std::vector<std::string> apply_controls(VideoDevice& device, const std::vector<C
 /// \return whether every wish that the camera has a control for still stands. Some cameras take an exposure only once
 /// they stream.
 bool all_stand(VideoDevice& device, const std::vector<ControlWish>& wishes);
+
+/// A control that a camera has.
+struct OfferedControl {
+  std::uint32_t id = 0;
+  std::string name;  ///< the driver's words.
+  std::int32_t minimum = 0, maximum = 0, step = 1;
+  std::int32_t value = 0;
+};
+
+/// \return every integer, menu and on/off control, in the driver's order; bounded against lists that never end.
+std::vector<OfferedControl> offered_controls(VideoDevice& device);
+
+/// \return the control's value; nothing when the camera has none of that id.
+std::optional<std::int32_t> control_value(VideoDevice& device, std::uint32_t id);
+
+/// Leaves exposure, gain and white balance to the camera, as far as it can.
+void set_automatic(VideoDevice& device);
 
 }  // namespace cgsr::hal::v4l2

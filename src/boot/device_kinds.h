@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "hal/camera.h"
+#include "hal/can_bus.h"
 #include "hal/drive.h"
 #include "hal/simulation.h"
+#include "hal/socketcan/parameters.h"
 #include "hal/switches.h"
 #include "platform/clock.h"
 #include "src/config/robot.h"
@@ -37,5 +39,9 @@ Result<std::unique_ptr<hal::Drive>> make_base(const DeviceContext& context);
 
 /// The lines of the kind switches.kind, not started.
 Result<std::unique_ptr<hal::Switches>> make_switches(const DeviceContext& context);
+
+/// A CAN interface of this computer, not started. Of what travels there only the messages of the RMP family and what
+/// commands it reach the program (hal/rmp/messages.h).
+std::unique_ptr<hal::CanBus> make_socketcan_bus(const hal::socketcan::SocketCanParameters& parameters);
 
 }  // namespace cgsr::boot

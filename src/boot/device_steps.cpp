@@ -1,5 +1,8 @@
 // The steps that open devices. Which one each of them is: device_kinds.h.
+#include <utility>
+
 #include "src/boot/device_kinds.h"
+#include "src/boot/device_wait.h"
 #include "src/boot/robot_plan.h"
 #include "src/boot/simulation_plugin.h"
 
@@ -8,6 +11,20 @@ namespace {
 
 DeviceContext context_of(RobotState& state) {
   return {state.setup.config, state.devices.simulation.get(), state.devices.simulation_origin, state.clocks.real};
+}
+
+/// Opens a device. One of this computer may be late: then, as the options say, it is waited for, or `check` lets it be.
+/// \param real  it is one of this computer.
+template <class Open>
+auto open_device(RobotState& state, const char* name, bool real, Open open) {
+  const RunOptions& options = state.setup.options;
+  if (!real) return open();
+  if (options.wait_for_devices != nullptr) {
+    return open_when_there(name, state.clocks.real, *options.wait_for_devices, open);
+  }
+  auto opened = open();
+  if (!opened) state.report.missing_devices.push_back(opened.error().message);
+  return opened;
 }
 
 }  // namespace
@@ -28,7 +45,8 @@ Result<void> open_simulation(RobotState& state) {
 }
 
 Result<void> start_camera(RobotState& state) {
-  auto opened = open_camera(context_of(state));
+  auto opened = open_device(state, "camera", state.setup.config.real_camera(),
+                            [&state] { return open_camera(context_of(state)); });
   if (!opened) return tl::unexpected(opened.error());
   Devices& devices = state.devices;
   devices.camera = std::move(opened->camera);
@@ -44,14 +62,16 @@ Result<void> start_base(RobotState& state) {
   state.devices.base =
       std::make_unique<MotionLoop>(std::move(*drive), state.setup.config.motion,
                                    state.setup.options.dry_run ? MotionLoop::Mode::kDryRun : MotionLoop::Mode::kLive);
-  return state.devices.base->start();
+  return open_device(state, "base", state.setup.config.real_base(), [&state] { return state.devices.base->start(); });
 }
 
 Result<void> start_switches(RobotState& state) {
   auto switches = make_switches(context_of(state));
   if (!switches) return tl::unexpected(switches.error());
   state.devices.switches = std::move(*switches);
-  if (auto started = state.devices.switches->start(); !started) return started;
+  auto started = open_device(state, "lines", state.setup.config.real_switches(),
+                             [&state] { return state.devices.switches->start(); });
+  if (!started) return started;
   auto checked = tasks::check_lines(*state.devices.switches, state.lines());
   if (!checked) state.devices.switches->stop();
   return checked;

@@ -5,9 +5,11 @@
 #include "src/sinks/digest_sink.h"
 #include "src/sinks/log_sink.h"
 #include "src/sinks/plan_picture.h"
+#include "src/sinks/profile_sink.h"
 #include "src/sinks/recording_sink.h"
 #include "src/sinks/trace_sink.h"
 #include "src/sinks/video_sink.h"
+#include "src/tasks/ring_report.h"
 
 namespace cgsr::boot {
 namespace {
@@ -37,6 +39,10 @@ Result<void> open_outputs(RobotState& state) {
   if (state.setup.config.simulated_camera()) {
     outputs.truth = &outputs.sinks.add(std::make_unique<sinks::TruthSink>(
         *state.devices.simulation, set_distance_m(state.setup.config), options.observer));
+  }
+  if (options.profile || !options.status.empty()) {
+    outputs.sinks.add(std::make_unique<sinks::ProfileSink>(
+        schedule, options.status, [&links = state.links] { return tasks::rings_json(links); }));
   }
   const sinks::GroundTruth* const truth = outputs.truth != nullptr ? &outputs.truth->ground_truth() : nullptr;
   if (!options.csv.empty()) {

@@ -8,23 +8,10 @@
 #include "src/boot/boot_pose.h"
 #include "src/boot/robot_plan.h"
 #include "src/boot/run_loops.h"
+#include "src/tasks/ring_report.h"
 
 namespace cgsr::boot {
 namespace {
-
-template <class Visitor>
-void visit_rings(const tasks::Links& links, Visitor visit) {
-  visit("images", links.images.statistics());
-  visit("goals", links.goals.statistics());
-  visit("odometry", links.odometry.statistics());
-  visit("arm_requests", links.arm_requests.statistics());
-  visit("switch_requests", links.switch_requests.statistics());
-  visit("switch_answers", links.switch_answers.statistics());
-  visit("switchings", links.switchings.statistics());
-  visit("reports", links.reports.statistics());
-  visit("pictures", links.pictures.statistics());
-  visit("motions", links.motions.statistics());
-}
 
 void add_rings(const tasks::Links& links, sinks::Summary& summary) {
   const auto& capture = links.capture;
@@ -33,13 +20,9 @@ void add_rings(const tasks::Links& links, sinks::Summary& summary) {
                              {"no_slot", capture.no_slot.load()},
                              {"corrupt", capture.corrupt.load()},
                              {"disconnected", capture.disconnected.load()}};
+  summary.json["rings"] = tasks::rings_json(links);
   summary.text += "\nring          capacity  high water  pushed  dropped  skipped\n";
-  visit_rings(links, [&summary](const char* name, const RingStatistics& ring) {
-    summary.json["rings"][name] = {{"capacity", ring.capacity},
-                                   {"high_water", ring.high_water},
-                                   {"pushed", ring.pushed},
-                                   {"dropped", ring.dropped},
-                                   {"skipped", ring.skipped}};
+  tasks::visit_rings(links, [&summary](const char* name, const RingStatistics& ring) {
     summary.text += fmt::format("{:<14}{:>8}{:>12}{:>8}{:>9}{:>9}\n", name, ring.capacity, ring.high_water, ring.pushed,
                                 ring.dropped, ring.skipped);
   });

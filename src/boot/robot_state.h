@@ -12,6 +12,7 @@
 #include "pipeline/motion/motion_loop.h"
 #include "pipeline/vision_loop.h"
 #include "platform/clock.h"
+#include "platform/stop.h"
 #include "src/config/robot.h"
 #include "src/sinks/fan_out.h"
 #include "src/sinks/statistics_sink.h"
@@ -32,7 +33,11 @@ struct RunOptions {
   std::string video;
   std::string trace;
   std::string recording;
+  std::string status;                       ///< rewritten every second for `cgsr top`.
+  bool profile = false;                     ///< the summary has a key "profile".
   sinks::FrameObserver observer = nullptr;  ///< for the lab; of a simulated robot in lock-step only.
+  StopRequest* wait_for_devices =
+      nullptr;  ///< a late device of this computer is waited for until it is requested; null: refused.
 };
 
 /// What a robot is to be.
@@ -88,7 +93,8 @@ struct Outputs {
 /// What there is to say after booting, for people.
 struct BootReport {
   std::vector<std::string> notes;
-  std::vector<std::string> problems;  ///< what the robot does without, and why.
+  std::vector<std::string> problems;         ///< what the robot does without, and why.
+  std::vector<std::string> missing_devices;  ///< problems of devices of this computer, which a service would wait for.
 };
 
 /// Everything that a robot is made of. The order of the members is the order of their lifetimes: leases and threads go before what they

@@ -5,6 +5,7 @@
 
 #include "pipeline/runtime/robot_threads.h"
 #include "platform/memory.h"
+#include "platform/message_rate.h"
 #include "platform/service.h"
 #include "platform/thread.h"
 #include "src/boot/run_loops.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr Duration kSupervisorPeriod = seconds(0.1);
 constexpr Duration kHousekeepingPeriod = seconds(0.01);
+constexpr Duration kCameraMessageGap = seconds(5.0);
 
 /// The bodies of the threads of docs/threads.md: each a task and the wait between its steps.
 class LiveLoops {
@@ -126,8 +128,11 @@ Result<void> start_threads(ThreadTable& threads, LiveLoops& loops, tasks::Links&
 }
 
 /// Until somebody requests a stop or the end comes. A thread that is silent is named once, and the watchdog is not pinged.
-void supervise_until(MonoTime end, Heartbeats& heartbeats, RealClock& clock, StopRequest& stop) {
+/// What the camera says of itself (unplugged, back, damaged images) goes to the log, a line in kCameraMessageGap at most.
+void supervise_until(MonoTime end, Heartbeats& heartbeats, const hal::Camera& camera, RealClock& clock,
+                     StopRequest& stop) {
   bool silence_reported = false;
+  MessageRate camera_messages(kCameraMessageGap);
   while (!stop.wait_until(std::min(end, clock.now() + kSupervisorPeriod))) {
     if (clock.now() >= end) break;
     const auto silent = supervise(heartbeats, clock.now());
@@ -136,6 +141,11 @@ void supervise_until(MonoTime end, Heartbeats& heartbeats, RealClock& clock, Sto
                        to_seconds(silent.front().lasting));
     }
     silence_reported = !silent.empty();
+    const std::string problem = camera.last_problem();
+    if (camera_messages.take(problem, clock.now())) {
+      spdlog::warn("{}", problem);
+      service::notify_status(problem);
+    }
   }
 }
 
@@ -156,10 +166,11 @@ Result<void> run_live(RobotState& state, StopRequest& stop) {
   if (auto started = start_threads(threads, loops, state.links); !started) return started;
   spdlog::info("threads:\n{}", to_text(threads.report()));
   service::notify_ready();
+  service::notify_status("running");
 
   const double duration_s = state.setup.options.duration_s;
-  supervise_until(duration_s > 0.0 ? clock.now() + seconds(duration_s) : MonoTime::max(), loops.heartbeats, clock,
-                  stop);
+  supervise_until(duration_s > 0.0 ? clock.now() + seconds(duration_s) : MonoTime::max(), loops.heartbeats,
+                  *state.devices.camera, clock, stop);
   service::notify_stopping();
   Result<void> outcome = camera_outcome(state);
   state.devices.camera->stop();

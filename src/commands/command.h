@@ -22,10 +22,14 @@ enum ExitCode : int {
 void add_run_command(CLI::App& app, int& exit_code);
 void add_calibrate_command(CLI::App& app, int& exit_code);
 void add_check_command(CLI::App& app, int& exit_code);
+void add_completion_command(CLI::App& app, int& exit_code);
 void add_config_command(CLI::App& app, int& exit_code);
+void add_devices_command(CLI::App& app, int& exit_code);
 void add_learn_command(CLI::App& app, int& exit_code);
 void add_track_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
+void add_profile_command(CLI::App& app, int& exit_code);
+void add_top_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_light_command(CLI::App& app, int& exit_code);
 void add_localize_command(CLI::App& app, int& exit_code);
@@ -37,6 +41,10 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code);
 void add_calibrate_mount(CLI::App& calibrate, int& exit_code);
 void add_calibrate_probes(CLI::App& calibrate, int& exit_code);
 void add_calibrate_odometry(CLI::App& calibrate, int& exit_code);
+
+// What `devices` is made of.
+void add_devices_camera(CLI::App& devices, int& exit_code);
+void add_devices_base(CLI::App& devices, int& exit_code);
 
 /// Prints `error: …` to standard error. \return kFailure.
 int report(const Error& error);

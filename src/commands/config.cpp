@@ -54,7 +54,7 @@ void add_new(CLI::App& config, int& exit_code) {
   auto options = std::make_shared<Options>();
   auto* command = config.add_subcommand("new", "write a short commented robot's file to start from");
   auto* kind = command->add_option_group("kind", "where the images come from");
-  kind->add_flag("--webcam", options->webcam, "images that arrive at their own rate");
+  kind->add_flag("--webcam", options->webcam, "a webcam of this computer");
   kind->add_flag("--recording", options->recording, "a recording, processed as fast as possible");
   kind->require_option(1);
   command->add_option("--output", options->output, "the file to write; without it the text is printed");

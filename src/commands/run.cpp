@@ -15,21 +15,13 @@
 #include "src/boot/robot.h"
 #include "src/commands/command.h"
 #include "src/commands/option_checks.h"
+#include "src/commands/run_robot.h"
 #include "src/config/load.h"
 #include "src/output/text_file.h"
+#include "src/sinks/profile.h"
 
 namespace cgsr::app {
 namespace {
-
-struct Options {
-  std::string config = "config/robots/video.toml";
-  std::string input;
-  std::string model;
-  std::string json;
-  std::string log_level = "info";
-  int seed = -1;
-  boot::RunOptions run;
-};
 
 std::string ended_by(const boot::Robot& robot) {
   if (const int signal = StopOnSignals::received(); signal != 0) return fmt::format("SIG{}", sigabbrev_np(signal));
@@ -37,7 +29,7 @@ std::string ended_by(const boot::Robot& robot) {
   return "the duration";
 }
 
-Result<void> apply(const Options& options, config::Robot& config) {
+Result<void> apply(const RunCommand& options, config::Robot& config) {
   if (!options.input.empty()) config.camera.replay.path = options.input;
   if (!options.model.empty()) config.run.model = options.model;
   if (options.seed >= 0) config.sim.seed = options.seed;
@@ -51,7 +43,21 @@ Result<void> apply(const Options& options, config::Robot& config) {
   return {};
 }
 
-int run_robot(const Options& options) {
+std::string profile_of(const sinks::Summary& summary) {
+  return sinks::profile_text(summary.json["profile"]) +
+         fmt::format("\nconfiguration {}\n", summary.json["config_sha256"].get<std::string>());
+}
+
+/// A service that is told to end while it waits for a device has not failed.
+int stopped_before_the_start(const Error& awaited) {
+  fmt::print("ended by SIG{} before the robot was there: {}\n", sigabbrev_np(StopOnSignals::received()),
+             awaited.message);
+  return kSuccess;
+}
+
+}  // namespace
+
+int run_robot(const RunCommand& options) {
   // Before the first thread, and before anything that takes time: a signal at any moment ends the program in order.
   StopRequest stop;
   const StopOnSignals signals(stop);
@@ -62,8 +68,10 @@ int run_robot(const Options& options) {
   auto config = config::load_robot(options.config);
   if (!config) return report(config.error());
   if (auto applied = apply(options, *config); !applied) return report(applied.error());
-  auto robot = boot::Robot::build(*config, options.run);
-  if (!robot) return report(robot.error());
+  boot::RunOptions run = options.run;
+  if (options.wait_for_devices) run.wait_for_devices = &stop;
+  auto robot = boot::Robot::build(*config, run);
+  if (!robot) return stop.requested() ? stopped_before_the_start(robot.error()) : report(robot.error());
   const boot::RobotState& state = (*robot)->state();
   for (const std::string& note : state.report.notes) spdlog::info("{}", note);
   for (const std::string& problem : state.report.problems) spdlog::error("{}", problem);
@@ -71,17 +79,15 @@ int run_robot(const Options& options) {
 
   if (auto done = (*robot)->run(stop); !done) return report(done.error());
   const sinks::Summary summary = (*robot)->summary(ended_by(**robot));
-  fmt::print("{}", summary.text);
+  fmt::print("{}", options.run.profile ? profile_of(summary) : summary.text);
   if (!options.json.empty()) {
     if (auto written = write_file(options.json, summary.json.dump(1) + "\n"); !written) return report(written.error());
   }
   return state.outputs.sinks.problem().empty() ? kSuccess : kFailure;
 }
 
-}  // namespace
-
 void add_run_command(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunCommand>();
   auto* command = app.add_subcommand("run", "run the robot in the foreground, from camera to wheels");
   command->add_option("--config", options->config, "the robot's file")->capture_default_str();
   command->add_option("--input", options->input, "images to replay instead of those that the file names");
@@ -91,11 +97,15 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration", options->run.duration_s, "end after that many seconds")->check(in_range(1e-3, 1e6));
   command->add_flag("--dry-run", options->run.dry_run, "compute and record, command nothing");
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
+  command->add_flag("--wait-for-devices", options->wait_for_devices,
+                    "wait for a camera, CAN interface or line of this computer that is not there yet, as the service "
+                    "does");
   command->add_option("--csv", options->run.csv, "write a row per image");
   command->add_option("--video", options->run.video, "write a video of what the robot saw and did");
   command->add_option("--trace", options->run.trace, "write a trace of stages and control cycles (ui.perfetto.dev)");
   command->add_option("--recording", options->run.recording,
                       "write a recording in MCAP (Foxglove): outputs and images");
+  command->add_option("--status", options->run.status, "rewrite this file every second, for cgsr top");
   command->add_option("--json", options->json, "write the summary for machines");
   command->add_option("--log-level", options->log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();

@@ -117,6 +117,12 @@ struct Robot {
   /// Some device is part of the simulated home.
   [[nodiscard]] bool simulated() const { return simulated_camera() || simulated_base() || simulated_switches(); }
 
+  [[nodiscard]] bool real_camera() const { return camera.kind == CameraKind::kV4l2; }
+  [[nodiscard]] bool real_base() const { return base.kind == BaseKind::kRmp && base.can == CanKind::kSocketCan; }
+  [[nodiscard]] bool real_switches() const { return switches.kind == SwitchesKind::kGpiod; }
+  /// Some device is one of this computer.
+  [[nodiscard]] bool real() const { return real_camera() || real_base() || real_switches(); }
+
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
@@ -139,6 +145,10 @@ struct Robot {
       return "run.pace = \"live\" does not go with camera.kind = \"sim\", which is not rendered in real time: "
              "lock_step "
              "or real_time";
+    }
+    if (!live && real()) {
+      return "devices of this computer (camera.kind = \"v4l2\", base.can = \"socketcan\", switches.kind = \"gpiod\") "
+             "need run.pace = \"live\"";
     }
     if (camera.kind != CameraKind::kReplay) return "";
     const bool own_rate = camera.replay.pace == hal::ReplayPace::kOwnRate;

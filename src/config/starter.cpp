@@ -37,12 +37,11 @@ std::string_view webcam_starter() {
 
 run.pace = "live"                       # a thread per task, in real time
 
-# No camera device is supported yet: a recording of the webcam is replayed at its own rate instead.
-[camera.replay]
-path = "webcam.mp4"                     # a video or a folder of images, relative to this file
-pace = "own_rate"
-width_px = 640
-height_px = 480
+# `cgsr devices` lists the cameras of this computer, each with its id; `cgsr devices camera --setup` measures the exposure.
+[camera]
+kind = "v4l2"
+v4l2.device = "/dev/video0"
+v4l2.white_balance_k = 4600             # fixed: colours are recognised only under a white balance that stays
 
 # The optics of the camera in pixels. These are typical of a webcam; `cgsr calibrate camera` measures them.
 [camera.pinhole]

@@ -1,5 +1,9 @@
 // Any mix of devices works: each kind is chosen by its own key.
+#include <csignal>
+
+#include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -154,7 +158,7 @@ TEST_F(DeviceKinds, TheKeysOfBeforeAreNamedWithThoseOfNow) {
 TEST_F(DeviceKinds, AnUnknownKindIsNamedWithThoseThatThereAre) {
   const auto outcome = run_cgsr({"check", "--config", robot({{"camera.kind", quoted("replya")}})});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("camera.kind = \"replya\" is not one of \"replay\", \"sim\""),
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("camera.kind = \"replya\" is not one of \"replay\", \"sim\", \"v4l2\""),
                                     HasSubstr("did you mean \"replay\"?")));
 }
 
@@ -167,6 +171,57 @@ TEST_F(DeviceKinds, CheckFindsTheProblemsOfEachDeviceAtOnce) {
   const auto outcome = run_cgsr({"check", "--config", robot(keys)});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, AllOf(HasSubstr("nowhere.toml"), HasSubstr(scratch_ / "none"), HasSubstr("'arm'")));
+}
+
+// What a computer without a robot's devices says of a robot's file: each device by its name, with what to do about it.
+class RealDevices : public DeviceKinds {
+ protected:
+  std::string real(Keys keys = {}) {
+    keys.insert({{"run.pace", quoted("live")},
+                 {"camera.kind", quoted("v4l2")},
+                 {"camera.v4l2.device", quoted("no-such-camera")},
+                 {"base.kind", quoted("rmp")},
+                 {"base.can", quoted("socketcan")},
+                 {"base.socketcan.interface", quoted("nocan7")},
+                 {"switches.kind", quoted("gpiod")},
+                 {"switches.arming_line", quoted("no-such-line")}});
+    return robot(keys);
+  }
+};
+
+TEST_F(RealDevices, CheckNamesEachThatIsMissing) {
+  const auto outcome = run_cgsr({"check", "--config", real()});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("camera 'no-such-camera' is not there: `cgsr devices`"),
+                                    HasSubstr("CAN: "), HasSubstr("no-such-line")));
+}
+
+TEST_F(RealDevices, CheckOfAServiceTakesThemForLate) {
+  const auto outcome = run_cgsr({"check", "--devices-may-be-late", "--config", real()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("not there yet: camera 'no-such-camera'"), HasSubstr("good")));
+  const auto wrong = run_cgsr({"check", "--devices-may-be-late", "--config", real({{"run.model", quoted("/none")}})});
+  EXPECT_EQ(wrong.exit_code, 1) << "a model is not late, it is missing";
+}
+
+TEST_F(RealDevices, WithoutWaitingTheRunEndsAtTheFirstThatIsMissing) {
+  const auto outcome = run_cgsr({"run", "--config", real()});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("camera 'no-such-camera' is not there"));
+}
+
+// It says once what it waits for, and a signal ends it in order.
+TEST_F(RealDevices, AServiceWaitsForALateCameraAndSaysSoOnce) {
+  RunningCgsr running({"run", "--wait-for-devices", "--config", real()});
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  EXPECT_FALSE(running.ended());
+  running.send(SIGTERM);
+  const auto outcome = running.wait();
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("ended by SIGTERM before the robot was there: camera 'no-such-camera'"));
+  const auto first = outcome.errors.find("waiting for the camera");
+  ASSERT_NE(first, std::string::npos) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("waiting for the camera", first + 1), std::string::npos) << outcome.errors;
 }
 
 }  // namespace

@@ -107,7 +107,32 @@ TEST(Starter, WhatIsWrittenIsAShortGoodFile) {
     const auto robot = load_robot(file);
     ASSERT_TRUE(robot) << robot.error().message;
     EXPECT_FALSE(robot->run.learn.empty());
-    EXPECT_FALSE(robot->camera.replay.path.empty());
+    EXPECT_EQ(robot->camera.replay.path.empty(), robot->real_camera());
+  }
+}
+
+TEST(Starter, ARobotForAWebcamNeedsTwelveLines) {
+  std::ifstream text(CGSR_SOURCE_DIR "/config/robots/webcam.toml");
+  EXPECT_EQ(std::count(std::istreambuf_iterator<char>(text), {}, '\n'), 12);
+  const auto robot = load_robot(CGSR_SOURCE_DIR "/config/robots/webcam.toml");
+  ASSERT_TRUE(robot) << robot.error().message;
+  EXPECT_TRUE(robot->real_camera());
+  EXPECT_FALSE(robot->motion.armed_at_start);
+}
+
+// What runs in stamps' time has no place for devices that keep their own.
+TEST(RealDevices, NeedThreadsAndTheClock) {
+  for (const std::string_view device :
+       {"camera.kind = \"v4l2\"", "base = {kind = \"rmp\", can = \"socketcan\"}", "switches.kind = \"gpiod\""}) {
+    const test::ScratchFolder folder;
+    const auto file = folder / "robot.toml";
+    std::ofstream(file) << device << "\ncamera.replay.pace = \"own_rate\"\n";
+    const auto lock_step = load_robot(file);
+    ASSERT_FALSE(lock_step) << device;
+    EXPECT_THAT(lock_step.error().message, testing::HasSubstr("need run.pace = \"live\""));
+    std::ofstream(file, std::ios::app) << "run.pace = \"live\"\n";
+    const auto live = load_robot(file);
+    EXPECT_TRUE(live) << live.error().message;
   }
 }
 

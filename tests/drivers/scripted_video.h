@@ -39,6 +39,7 @@ struct ScriptedVideo {
   std::uint32_t stamp_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   std::map<std::uint32_t, Control> controls;
   std::vector<std::uint8_t> jpeg;  ///< what an MJPEG stream delivers.
+  std::function<std::uint8_t(std::uint32_t)> byte_of = [](std::uint32_t image) { return image & 0xFF; };  ///< of YUYV.
 
   // What goes wrong.
   std::atomic<bool> plugged{true};
@@ -84,7 +85,7 @@ struct ScriptedVideo {
         std::copy(jpeg.begin(), jpeg.end(), bytes.begin());
         buffer.bytesused = static_cast<std::uint32_t>(jpeg.size());
       } else {
-        std::memset(bytes.data(), static_cast<int>(number & 0xFF), bytes.size());
+        std::memset(bytes.data(), byte_of(number), bytes.size());
         buffer.bytesused = static_cast<std::uint32_t>(image_bytes());
       }
       buffer.sequence = number;
@@ -214,8 +215,13 @@ inline int ScriptedVideo::control(unsigned long request, void* argument) {
       return 0;
     case VIDIOC_QUERYCTRL: {
       auto& query = *static_cast<v4l2_queryctrl*>(argument);
-      const auto found = controls.find(query.id);
+      constexpr std::uint32_t kNext = V4L2_CTRL_FLAG_NEXT_CTRL;
+      const bool next = (query.id & kNext) != 0;
+      const auto found = next ? controls.upper_bound(query.id & ~kNext) : controls.find(query.id);
       if (found == controls.end()) return EINVAL;
+      query.id = found->first;
+      query.type = V4L2_CTRL_TYPE_INTEGER;
+      std::memcpy(query.name, "scripted control", 17);
       query.minimum = found->second.minimum;
       query.maximum = found->second.maximum;
       query.step = 1;
