@@ -171,6 +171,8 @@ Cost cost_of(std::span<const LineDistance> lines, const Pose& X_WC, const Prior&
   return cost;
 }
 
+// A loop of its own, beside calibration::least_squares: this one runs dozens of times per image. Its sizes are fixed, nothing is allocated, and its
+// damping is begun only when a full step fails; a point that falls behind the camera drops out of the sum, which a general solver does not know.
 Solution solve(std::span<const LineDistance> lines, const Pose& start, const Prior& prior,
                const Matrix6d& prior_information, const geometry::Camera& camera, const SolverOptions& options) {
   if (options.paper) return solve_as_the_paper(lines, start, prior, prior_information, camera);

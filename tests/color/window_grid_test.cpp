@@ -110,7 +110,6 @@ TEST(WindowGridFault, RefusesQuestionsThatMeanNothing) {
   EXPECT_EQ(failure([](R& r) { r.max_overlap = 1.5; }), SearchFailure::kBadRequest);
   EXPECT_EQ(failure([](R& r) { r.max_shortfall = -0.1; }), SearchFailure::kBadRequest);
   EXPECT_EQ(failure([&](R& r) { r.region = Box{0, nan, 100, 100}; }), SearchFailure::kBadRequest);
-  EXPECT_EQ(failure([](R& r) { r.prior = Prior{10, 10, 0.0, 0.1}; }), SearchFailure::kBadRequest);
   EXPECT_EQ(failure([](R& r) { r.region = Box{0, 0, 20, 20}; }), SearchFailure::kNoRoom);
   EXPECT_EQ(failure([](R& r) { r.width_px = 900; }), SearchFailure::kNoRoom);
 }

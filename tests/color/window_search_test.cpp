@@ -63,13 +63,11 @@ SearchRequest random_request(const ColorModel& model, int width, int height, std
   if (random() % 3 == 0)
     request.region =
         Box{unit(random) * width / 2, unit(random) * height / 2, unit(random) * width, unit(random) * height};
-  if (random() % 3 == 0)
-    request.prior = Prior{unit(random) * width, unit(random) * height, 1 + unit(random) * width, unit(random) * 0.3};
   return request;
 }
 
 // The heart of it: whatever the model, image and question, the fast search answers what the exhaustive one answers, to the last bit. Both
-// modes, all divergences, one match or many, regions, priors, ties, images that are no multiple of the cell.
+// modes, all divergences, one match or many, regions, ties, images that are no multiple of the cell.
 TEST(WindowSearchProperty, FindsWhatTheExhaustiveSearchFinds) {
   std::mt19937 random(20261121);
   int questions = 0, matches = 0;
@@ -175,27 +173,6 @@ TEST(WindowSearch, FindsNothingWhereThereIsNothing) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->count, 0);
   EXPECT_TRUE(result->exact);
-}
-
-// A prior shifts the choice between two equal objects and cages nothing: alone, the far one is found.
-TEST(WindowSearch, APriorIsNoCage) {
-  FlagWorld world;
-  auto search = WindowSearch::create(world.model, {}, 320, 240).value();
-  const Box left{40, 96, 36, 48}, right{240, 96, 36, 48};
-  const auto found_with = [&](bool both, double prior_x) {
-    test::Painting scene(320, 240);
-    scene.paint([](int, int) { return imaging::Rgb{0.2, 0.4, 0.25}; });
-    test::paint_flag(scene, right);
-    if (both) test::paint_flag(scene, left);
-    imaging::ReducedImage image(320, 240);
-    EXPECT_TRUE(imaging::reduce(scene.photograph(), 2, search.labels(), image));
-    SearchRequest request = request_for(world.model);
-    request.prior = Prior{prior_x, 120, 60, 0.1};
-    return search.search(image, request).value().matches[0].box.x;
-  };
-  EXPECT_NEAR(found_with(true, 58), left.x, 6);
-  EXPECT_NEAR(found_with(true, 258), right.x, 6);
-  EXPECT_NEAR(found_with(false, 58), right.x, 6);
 }
 
 // However little it may do, it says so, and gets better with more; with enough it is exact.

@@ -11,15 +11,14 @@ namespace cgsr::color {
 namespace {
 
 struct Candidate {
-  int rank = 0;   // similarity less the prior's penalty: the higher the better
-  int units = 0;  // similarity
+  int units = 0;  // similarity: the higher the better
   int light = 0;
   GridWindow window;
 
   // Best first; the order of ties is part of the contract.
   friend bool operator<(const Candidate& a, const Candidate& b) {
-    return std::tuple(-a.rank, a.window.size, a.light, a.window.y, a.window.x) <
-           std::tuple(-b.rank, b.window.size, b.light, b.window.y, b.window.x);
+    return std::tuple(-a.units, a.window.size, a.light, a.window.y, a.window.x) <
+           std::tuple(-b.units, b.window.size, b.light, b.window.y, b.window.x);
   }
 };
 
@@ -70,11 +69,6 @@ tl::expected<SearchResult, SearchFailure> ExhaustiveSearch::search(const imaging
         Candidate candidate =
             best_light(similarity_, histogram_of(image, *grid, window, labels_.count()), grid->pixels(size));
         candidate.window = window;
-        candidate.rank = candidate.units;
-        if (request.prior) {
-          const Box box = grid->box(window);
-          candidate.rank -= penalty_units(*request.prior, box.x + box.width / 2, box.y + box.height / 2);
-        }
         if (candidate.units >= least) candidates.push_back(candidate);
         ++result.windows;
       }
@@ -86,7 +80,7 @@ tl::expected<SearchResult, SearchFailure> ExhaustiveSearch::search(const imaging
   std::vector<GridWindow> taken;
   for (const auto& candidate : candidates) {
     if (result.count == request.candidates) break;
-    if (candidate.rank < candidates.front().rank - shortfall_units(request.max_shortfall)) break;
+    if (candidate.units < candidates.front().units - shortfall_units(request.max_shortfall)) break;
     const bool free = std::none_of(taken.begin(), taken.end(), [&](const GridWindow& other) {
       return grid->collide(candidate.window, other, request.max_overlap);
     });

@@ -54,15 +54,6 @@ struct SearchSize {
 inline constexpr int kMaxMatches = 16;
 inline constexpr int kMaxSizes = 5;
 
-/// Where the object was and how surely it is still near: a penalty that grows with the square of the distance between the centres
-/// up to a limit, so that it shifts the choice and never forbids a window (the prior of 3.2.2; its form is ours).
-struct Prior {
-  double x_px = 0.0;  ///< centre, camera pixels.
-  double y_px = 0.0;
-  double radius_px = 100.0;  ///< > 0: where the penalty reaches its limit.
-  double penalty = 0.0;      ///< the limit, in similarity (0..1).
-};
-
 /// One question to the search.
 struct SearchRequest {
   double width_px = 0.0;  ///< the middle size, camera pixels: the learned one, or the last one found.
@@ -75,17 +66,16 @@ struct SearchRequest {
       0.0;  ///< of two matches at most this share of the smaller one may be covered by the other, 0..1.
   double max_shortfall =
       1.0;  ///< similarity (0..1) by which a further match may rank below the first. The lower, the cheaper.
-  std::optional<Box> region;  ///< windows lie wholly inside; nothing: the whole image.
-  std::optional<Prior> prior;
+  std::optional<Box> region;     ///< windows lie wholly inside; nothing: the whole image.
   WorkBudget* budget = nullptr;  ///< asked before each group of windows that is looked into; nothing: unlimited.
 };
 
 /// A window and the learned histogram that it is nearest to (Alg. 3.2, lines 8 to 11).
 struct Match {
-  Box box;                  ///< camera pixels, on the grid of strides.
-  double divergence = 0.0;  ///< without the prior's penalty.
-  int light = 0;            ///< index into the model's lights.
-  int size = 0;             ///< index into the sizes, 0 the smallest.
+  Box box;  ///< camera pixels, on the grid of strides.
+  double divergence = 0.0;
+  int light = 0;  ///< index into the model's lights.
+  int size = 0;   ///< index into the sizes, 0 the smallest.
 };
 
 /// What a search found: no match where no window is below max_divergence (Alg. 3.2, lines 14 to 18).
@@ -101,7 +91,7 @@ struct SearchResult {
 /// Why an image was not searched.
 enum class SearchFailure : std::uint8_t {
   kNoRoom,      ///< no window of any size fits into the image or region.
-  kBadRequest,  ///< a size, candidate count, overlap or prior that is not finite or out of range.
+  kBadRequest,  ///< a size, candidate count, overlap or region that is not finite or out of range.
   kTooLarge,    ///< the image is larger than the search was made for.
 };
 

@@ -66,12 +66,6 @@ Similarity::Similarity(const ColorModel& model, const SearchParameters& paramete
   }
 }
 
-int penalty_units(const Prior& prior, double x_px, double y_px) {
-  const double dx = (x_px - prior.x_px) / prior.radius_px;
-  const double dy = (y_px - prior.y_px) / prior.radius_px;
-  return static_cast<int>(prior.penalty * kOne * std::min(1.0, dx * dx + dy * dy));
-}
-
 double divergence_of_units(Divergence divergence, int units) {
   return divergence_of(divergence, static_cast<double>(units) / kOne);
 }

@@ -55,9 +55,6 @@ class Similarity {
   std::vector<std::int16_t> units_;  // [label][level][light]
 };
 
-/// The prior's penalty in units for a window centred at (x_px, y_px).
-int penalty_units(const Prior& prior, double x_px, double y_px);
-
 /// What a further match may lack of the first, in units.
 inline int shortfall_units(double max_shortfall) {
   return static_cast<int>(max_shortfall * kOne);

@@ -26,11 +26,6 @@ bool is_sound(const SearchRequest& request) {
       return false;
     }
   }
-  if (request.prior) {
-    const Prior& p = *request.prior;
-    if (!in(p.x_px, -kMaxSide, kMaxSide) || !in(p.y_px, -kMaxSide, kMaxSide)) return false;
-    if (!in(p.radius_px, 1.0, kMaxSide) || !in(p.penalty, 0.0, 1.0)) return false;
-  }
   return true;
 }
 

@@ -28,10 +28,7 @@ struct WindowSearch::State {
   void expand(const SearchNode& node);
   void take(const SearchNode& node);
   [[nodiscard]] bool is_ruled_out(const SearchNode& node) const;
-  [[nodiscard]] int min_penalty(int level, int size, int x, int y) const;
-  [[nodiscard]] bool is_of_interest(int units, int penalty) const {
-    return units >= min_units_ && units - penalty >= floor_rank_;
-  }
+  [[nodiscard]] bool is_of_interest(int units) const { return units >= min_units_ && units >= floor_units_; }
   [[nodiscard]] const WindowSize& window_size(int size) const { return grid.sizes[WindowGrid::size_at(size)]; }
 
   SearchParameters parameters;
@@ -49,8 +46,8 @@ struct WindowSearch::State {
   SearchResult result;
   SimilarityRows::Bound bound;
   std::array<GridWindow, kMaxMatches> taken;
-  int min_units_ = 0;   // of a match
-  int floor_rank_ = 0;  // what ranks below it can no longer be a match
+  int min_units_ = 0;    // of a match
+  int floor_units_ = 0;  // what is below it can no longer be a match
 };
 
 WindowSearch::State::State(const ColorModel& model, const SearchParameters& p, int max_label_pixels, int max_side)
@@ -77,7 +74,7 @@ tl::expected<void, SearchFailure> WindowSearch::State::begin(const imaging::Redu
     return tl::unexpected(SearchFailure::kTooLarge);
 
   min_units_ = min_units(parameters.divergence, request.max_divergence);
-  floor_rank_ = -kMaxUnits;
+  floor_units_ = -kMaxUnits;
   const WindowSize& largest = window_size(grid.size_count - 1);
   constexpr int kReach =
       kSearchTree[0].positions - 1 + 2 * 3;  // cells that a cover adds: of the group, and to whole blocks
@@ -110,26 +107,23 @@ void WindowSearch::State::push_window(int size, int x, int y, const CellRect& re
   ++result.examined;
   counts.exact(rect, histogram);
   const BestLight best = rows.best(histogram, levels[WindowGrid::size_at(size)]);
-  const int penalty = min_penalty(kWindowLevel, size, x, y);
-  if (!is_of_interest(best.units, penalty)) return;
-  const int rank = best.units - penalty;
+  if (!is_of_interest(best.units)) return;
   const int shortfall = request.candidates == 1 ? 0 : shortfall_units(request.max_shortfall);
-  floor_rank_ = std::max(floor_rank_, rank - shortfall);
-  queue.emplace_back(rank, kWindowLevel, size, best.light, y, x);
+  floor_units_ = std::max(floor_units_, best.units - shortfall);
+  queue.emplace_back(best.units, kWindowLevel, size, best.light, y, x);
   std::push_heap(queue.begin(), queue.end());
 }
 
 void WindowSearch::State::push_group(int level, int size, int x, int y, const CellRect& rect) {
   const SearchLevel& l = level_at(level);
   const LevelTable& table = levels[WindowGrid::size_at(size)];
-  const int penalty = min_penalty(level, size, x, y);
   bound.units = kMaxUnits;
   bound.refinable = false;
   if (counts.covered_pixels(rect) <= 65535) {
     l.exact ? counts.exact(rect, histogram) : counts.cover(rect, histogram);
     rows.bound(histogram, table, bound);
   }
-  if (!is_of_interest(bound.units, penalty)) return;
+  if (!is_of_interest(bound.units)) return;
 
   // What all windows of the group share, from the last one's corner to the first one's.
   const CellRect core{std::min(x + l.positions, grid.columns(size)) - 1, std::min(y + l.positions, grid.rows(size)) - 1,
@@ -138,9 +132,9 @@ void WindowSearch::State::push_group(int level, int size, int x, int y, const Ce
     counts.exact(core, histogram);
     const int core_pixels = (core.right - core.left) * (core.bottom - core.top) * grid.cell_px * grid.cell_px;
     rows.refine(histogram, table, core_pixels, grid.pixels(size), bound);
-    if (!is_of_interest(bound.units, penalty)) return;
+    if (!is_of_interest(bound.units)) return;
   }
-  queue.emplace_back(bound.units - penalty, level, size, 0, y, x);
+  queue.emplace_back(bound.units, level, size, 0, y, x);
   std::push_heap(queue.begin(), queue.end());
 }
 
@@ -154,21 +148,6 @@ void WindowSearch::State::expand(const SearchNode& node) {
       for (int x = 0; x < from.positions; x += to.positions) push(node.level() + 1, size, node.x() + x, node.y() + y);
     }
   }
-}
-
-// The least penalty of any window of a group: that of the nearest centre.
-int WindowSearch::State::min_penalty(int level, int size, int x, int y) const {
-  if (!request.prior) return 0;
-  const Prior& prior = *request.prior;
-  const double cell = grid.cell_px * grid.factor;
-  const WindowSize& first = window_size(size);
-  const WindowSize& last = window_size(level_at(level).all_sizes ? grid.size_count - 1 : size);
-  const int reach = level_at(level).positions - 1;
-  const double left = (grid.left + x + first.width / 2.0) * cell,
-               right = (grid.left + x + reach + last.width / 2.0) * cell;
-  const double top = (grid.top + y + first.height / 2.0) * cell,
-               bottom = (grid.top + y + reach + last.height / 2.0) * cell;
-  return penalty_units(prior, std::clamp(prior.x_px, left, right), std::clamp(prior.y_px, top, bottom));
 }
 
 // Whether a match already taken collides with every window of the node. How much of a window another covers falls away from some place to all
@@ -193,10 +172,9 @@ bool WindowSearch::State::is_ruled_out(const SearchNode& node) const {
 
 void WindowSearch::State::take(const SearchNode& node) {
   taken[static_cast<std::size_t>(result.count)] = {node.x(), node.y(), node.size()};
-  const int units = node.rank() + min_penalty(kWindowLevel, node.size(), node.x(), node.y());
   const GridWindow in_image{grid.left + node.x(), grid.top + node.y(), node.size()};
   result.matches[static_cast<std::size_t>(result.count++)] = {
-      grid.box(in_image), divergence_of_units(parameters.divergence, units), node.light(), node.size()};
+      grid.box(in_image), divergence_of_units(parameters.divergence, node.rank()), node.light(), node.size()};
 }
 
 WindowSearch::WindowSearch(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -222,7 +200,7 @@ tl::expected<SearchResult, SearchFailure> WindowSearch::search(const imaging::Re
                                                                const SearchRequest& request) {
   State& s = *state_;
   if (const auto begun = s.begin(image, request); !begun) return tl::unexpected(begun.error());
-  while (!s.queue.empty() && s.result.count < request.candidates && s.queue.front().rank() >= s.floor_rank_) {
+  while (!s.queue.empty() && s.result.count < request.candidates && s.queue.front().rank() >= s.floor_units_) {
     std::pop_heap(s.queue.begin(), s.queue.end());
     const SearchNode node = s.queue.back();
     s.queue.pop_back();

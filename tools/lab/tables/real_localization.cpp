@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "pipeline/geometry/quantile.h"
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/world/load.h"
 #include "src/input/camera_file.h"
@@ -59,12 +60,6 @@ std::vector<fs::path> pictures_of(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder, none)) paths.push_back(entry.path());
   std::ranges::sort(paths);
   return paths;
-}
-
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 /// ViSP's settings that are compared: every search range with one call and ten.
@@ -206,7 +201,7 @@ Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Repo
     report.rows.push_back(share_row(row, "followed (Canny)", tally.followed, static_cast<int>(pictures.size())));
     report.rows.push_back(mean_row(row, "median distance", "px", tally.medians, setting.seed));
     report.rows.push_back(share_row(row, "within 3 px", tally.near, tally.places));
-    return std::pair(tally.followed, -median_of(tally.medians));
+    return std::pair(tally.followed, -geometry::quantile(tally.medians, 0.5));
   };
   const auto ours = follow_ours(sequence, pictures.size());
   if (!ours) return tl::unexpected(ours.error());
