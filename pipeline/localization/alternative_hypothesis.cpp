@@ -9,28 +9,11 @@
 namespace cgsr::localization {
 namespace {
 
-// Where it is tried: so far off in the image, along what is least sure of the followed pose.
-constexpr double kLeast_px = 2.0;
-constexpr double kMost_px = 5.0;
+// Where it starts: along what is least sure of the tracked pose.
 constexpr int kDistances = 10;
 constexpr int kAxes = 3;
 constexpr std::uint32_t kProposals = 1000;  // then from the first one on
 constexpr double kFixed_px = 1e-3;          // an axis whose sigma moves the image less is not open
-
-constexpr double kWider = 6.0;  // sigmas of the belief that count as one
-constexpr int kRounds = 3;
-constexpr float kRadius_px = 4.0F;
-constexpr double kSame_px = 1.0;  // no further off it is the followed pose
-constexpr int kLeastMatches = 6;  // fewer hold no pose: what is left open would be taken for better
-
-// Of a squared sigma from the followed pose: the farther off, the more must speak for it. Two edges that are taken for each other lie close together.
-constexpr float kFarCounts = 0.001F;
-// An image says so much at most: one that is blurred or half hidden must not decide.
-constexpr float kMostOfAnImage = 0.04F;
-constexpr float kKept = 0.8F;  // of the lead, from image to image
-constexpr float kEnough = 0.12F;
-constexpr int kLeastImages = 5;
-constexpr float kBehind = -0.03F;  // in one image: it is given up
 
 double in_image(const geometry::Vector6d& step, const geometry::Matrix6d& metric) {
   return std::sqrt(step.dot(metric * step));
@@ -56,7 +39,9 @@ geometry::Pose AlternativeHypothesis::proposal(const Estimate& followed, const g
   for (int i = 0; i < kAxes; ++i) direction[i] = even_normal(proposals_, i);
   direction.normalize();
   // Sevenths of the way round: near and far take turns.
-  const double distance_px = kLeast_px + (kMost_px - kLeast_px) * (proposals_ * 7 % kDistances) / kDistances;
+  const AlternativeParameters& p = parameters_.alternative;
+  const double distance_px =
+      p.min_offset_px + (p.max_offset_px - p.min_offset_px) * (proposals_ * 7 % kDistances) / kDistances;
   proposals_ = (proposals_ + 1) % kProposals;
   geometry::Vector6d step = geometry::Vector6d::Zero();
   for (int i = 0; i < kAxes; ++i) {
@@ -67,7 +52,8 @@ geometry::Pose AlternativeHypothesis::proposal(const Estimate& followed, const g
 
 Estimate AlternativeHypothesis::better_than(const Estimate& followed, const Belief& belief,
                                             const SegmentTable& perceived, WorkBudget& budget) {
-  if (followed.matches < kLeastMatches) {
+  const AlternativeParameters& p = parameters_.alternative;
+  if (followed.matches < p.min_matches) {
     forget();
     return followed;
   }
@@ -75,10 +61,10 @@ Estimate AlternativeHypothesis::better_than(const Estimate& followed, const Beli
   // Edges that lead astray do so for many images, and a belief in the map as it is grows sure of them.
   const geometry::Matrix6d covariance = with_map_error(belief.prior.covariance, parameters_);
   const Belief doubted({belief.prior.X_WC, covariance});
-  const Belief wider({belief.prior.X_WC, kWider * kWider * covariance});
+  const Belief wider({belief.prior.X_WC, p.prior_widening * p.prior_widening * covariance});
   AlternateOptions options;
-  options.rounds = kRounds;
-  options.radius_px = kRadius_px;
+  options.rounds = p.rounds;
+  options.radius_px = static_cast<float>(p.match_radius_px);
   options.robust = kFollowedRobust;
   options.look_first = images_ > 0;
   options.look_again = false;
@@ -87,16 +73,16 @@ Estimate AlternativeHypothesis::better_than(const Estimate& followed, const Beli
   if (beside.rounds == 0) return followed;  // not granted: it stands as it did
   const geometry::Vector6d off = geometry::step_between(followed.solution.X_WC, beside.solution.X_WC);
   const auto chi2 = static_cast<float>(off.dot(doubted.information * off));
-  const float lead = beside.agreement - followed.agreement - kFarCounts * chi2;
-  if (!beside.solved || in_image(off, metric) < kSame_px || lead < kBehind) {
+  const float lead = beside.agreement - followed.agreement - static_cast<float>(p.prior_weight) * chi2;
+  if (!beside.solved || in_image(off, metric) < p.same_px || lead < -static_cast<float>(p.max_deficit)) {
     forget();
     return followed;
   }
   X_WC_ = beside.solution.X_WC;
-  lead_ = kKept * lead_ + std::min(lead, kMostOfAnImage);
+  lead_ = static_cast<float>(p.lead_kept) * lead_ + std::min(lead, static_cast<float>(p.max_lead_per_image));
   ++images_;
   if (lead_ < 0.0F) forget();
-  if (lead_ < kEnough || images_ < kLeastImages) return followed;
+  if (lead_ < static_cast<float>(p.min_lead) || images_ < p.min_images) return followed;
   options.rounds = parameters_.max_iterations;
   options.look_first = true;
   // The belief moves as a whole: it is as sure there as the doubted one was here.

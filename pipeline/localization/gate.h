@@ -24,11 +24,11 @@ struct Standing {
 };
 
 /// Whether two poses are one answer: which of them is taken would be no great error.
-bool same_answer(const geometry::Pose& a, const geometry::Pose& b);
+bool same_answer(const geometry::Pose& a, const geometry::Pose& b, const GateParameters& parameters);
 
 /// What speaks for an estimate that a search found: how well image and map agree there, how far ahead of the next best pose it is, less how
 /// far it is from the prior and how many poses there were to choose from: among many one fits by accident.
-float evidence_of(const Estimate& estimate, const Standing& standing);
+float evidence_of(const Estimate& estimate, const Standing& standing, const GateParameters& parameters);
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
 /// Ours: Alg. 4.1 has no gate.

@@ -59,7 +59,7 @@ struct Localizer::State {
         perception(camera),
         expectation(given_expectation ? std::move(given_expectation) : usual(given_map, parameters)),
         alternation(given_map, parameters, *expectation, perception.camera(), Perception::kMostSegments),
-        near(alternation),
+        near(parameters.decision, alternation),
         search(parameters, alternation, perception.camera()),
         alternative(parameters, alternation) {}
 
@@ -124,7 +124,7 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.prior_chi2 = estimate.prior_chi2;
   answer.lead = standing ? standing->lead : 1.0F;
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
-  answer.evidence = standing ? evidence_of(estimate, *standing) : estimate.explained;
+  answer.evidence = standing ? evidence_of(estimate, *standing, parameters.decision) : estimate.explained;
   if (parameters.gate) {
     answer.reason = gate(estimate, standing, with_map_error(covariance, parameters), parameters);
   } else if (estimate.solved) {

@@ -25,6 +25,97 @@ enum class ExpectationKind : std::uint8_t {
 inline constexpr Named<ExpectationKind> kExpectationKindNames[] = {{"raster", ExpectationKind::kRaster},
                                                                    {"osmesa", ExpectationKind::kOsmesa}};
 
+/// What counts as evidence for a pose, and how much of it the gate requires. Evidence is in units of agreement: 1 where all of the map that
+/// should be visible is in the image.
+struct GateParameters {
+  double max_lead = 0.3;
+  double chance_agreement = 0.2;
+  double worst_part_weight = 0.5;
+  double prior_weight = 0.02;
+  double choice_weight = 0.08;
+  double min_sigma_ratio = 0.3;
+  double sigma_ratio_per_evidence = 2.5;
+  double max_sigma_ratio = 1.2;
+  double same_m = 0.05;
+  double same_deg = 1.5;
+  int min_expected = 3;
+  int min_tracking_expected = 2;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("max_lead", self.max_lead, {0.0, 2.0}, "",
+                 "The lead over the next hypothesis counts as evidence up to this.");
+    visit.number("chance_agreement", self.chance_agreement, {0.0, 1.0}, "",
+                 "The agreement of the next hypothesis where the search found none: some pose always has as much.");
+    visit.number("worst_part_weight", self.worst_part_weight, {0.0, 5.0}, "",
+                 "The weight of the agreement in the worst parts of the image.");
+    visit.number("prior_weight", self.prior_weight, {0.0, 1.0}, "",
+                 "The evidence that each unit of squared Mahalanobis distance to the prior costs.");
+    visit.number("choice_weight", self.choice_weight, {0.0, 1.0}, "",
+                 "The evidence that the choice costs, per natural logarithm of the number of distinct poses in the "
+                 "prior: the best of many agrees by chance.");
+    visit.number("min_sigma_ratio", self.min_sigma_ratio, {0.0, 10.0}, "",
+                 "The share of max_sigma_m that is accepted after a search with just enough evidence.");
+    visit.number("sigma_ratio_per_evidence", self.sigma_ratio_per_evidence, {0.0, 100.0}, "",
+                 "The growth of that share per unit of evidence above min_evidence.");
+    visit.number("max_sigma_ratio", self.max_sigma_ratio, {0.0, 10.0}, "", "That share does not grow beyond this.");
+    visit.number("same_m", self.same_m, {0.0, 1.0}, "m",
+                 "Two poses are the same answer when they are at most this far apart and turned by at most same_deg.");
+    visit.number("same_deg", self.same_deg, {0.0, 45.0}, "deg",
+                 "The largest rotation between two poses that are the same answer.");
+    visit.number("min_expected", self.min_expected, {0, 1000}, "",
+                 "The gate requires at least this many expected edges after a search.");
+    visit.number("min_tracking_expected", self.min_tracking_expected, {0, 1000}, "",
+                 "The gate requires at least this many expected edges and matches when tracking from a narrow prior; "
+                 "that holds what they leave open.");
+  }
+};
+
+/// When another pose beside a tracked one takes its place. Leads are in units of agreement.
+struct AlternativeParameters {
+  double min_offset_px = 2.0;
+  double max_offset_px = 5.0;
+  double prior_widening = 6.0;
+  int rounds = 3;
+  double match_radius_px = 4.0;
+  double same_px = 1.0;
+  int min_matches = 6;
+  double prior_weight = 0.001;
+  double max_lead_per_image = 0.04;
+  double lead_kept = 0.8;
+  double min_lead = 0.12;
+  int min_images = 5;
+  double max_deficit = 0.03;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("min_offset_px", self.min_offset_px, {0.0, 100.0}, "px",
+                 "An alternative starts at least this far from the tracked pose, as motion of the image.");
+    visit.number("max_offset_px", self.max_offset_px, {0.0, 100.0}, "px", "An alternative starts at most this far.");
+    visit.number("prior_widening", self.prior_widening, {1.0, 100.0}, "",
+                 "The factor by which the prior's standard deviations are larger for the alternative.");
+    visit.number("rounds", self.rounds, {1, 50}, "",
+                 "The number of iterations by which an image refines the alternative.");
+    visit.number("match_radius_px", self.match_radius_px, {1.0, 50.0}, "px",
+                 "The largest effective distance of its matches.");
+    visit.number("same_px", self.same_px, {0.0, 100.0}, "px",
+                 "An alternative that comes nearer than this to the tracked pose is dropped.");
+    visit.number("min_matches", self.min_matches, {1, 1000}, "",
+                 "There is no alternative to a tracked pose with fewer matches: they would fit any pose.");
+    visit.number("prior_weight", self.prior_weight, {0.0, 1.0}, "",
+                 "The lead that each unit of squared Mahalanobis distance to the tracked pose costs.");
+    visit.number("max_lead_per_image", self.max_lead_per_image, {0.0, 2.0}, "",
+                 "An image adds at most this to the lead, so that one that is blurred or half hidden does not decide.");
+    visit.number("lead_kept", self.lead_kept, {0.0, 1.0}, "",
+                 "The share of the lead that is kept from image to image.");
+    visit.number("min_lead", self.min_lead, {0.0, 10.0}, "",
+                 "The alternative takes the tracked pose's place when its lead is at least this.");
+    visit.number("min_images", self.min_images, {1, 1000}, "", "The lead must have been gained in this many images.");
+    visit.number("max_deficit", self.max_deficit, {0.0, 2.0}, "",
+                 "An alternative is dropped when one image agrees with it by more than this less.");
+  }
+};
+
 /// How a camera's pose is corrected. Pixels are those of the grey image worked on: 320x240 for a 640x480 camera.
 struct LocalizerParameters {
   Method method = Method::kGlCorrect;
@@ -56,9 +147,24 @@ struct LocalizerParameters {
   double max_sigma_deg = 3.5;
   double max_rms_px = 1.35;
   int max_pieces = 1200;
+  GateParameters decision;
+  AlternativeParameters alternative;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
+    describe_method(self, visit);
+    describe_matches(self, visit);
+    describe_search(self, visit);
+    describe_gate(self, visit);
+    visit.number("max_pieces", self.max_pieces, {16, 20000}, "",
+                 "The largest number of visible edge pieces; the nearest and longest ones are kept.");
+    visit.section("decision", self.decision, "The evidence for a pose and the gate's decision on it");
+    visit.section("alternative", self.alternative, "Another pose beside a tracked one");
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void describe_method(Self& self, Visitor& visit) {
     visit.choice("method", self.method, kMethodNames, "The method that corrects a pose.");
     visit.choice("expectation", self.expectation, kExpectationKindNames,
                  "The renderer that determines the visible edges: raster is the project's own depth buffer; osmesa is "
@@ -72,6 +178,10 @@ struct LocalizerParameters {
                  "The iterations end when a step moves the image less than this.");
     visit.number("max_view_shift_px", self.max_view_shift_px, {0.0, 100.0}, "px",
                  "The visible edges are computed again when the pose has moved the image further than this.");
+  }
+
+  template <class Self, class Visitor>
+  static void describe_matches(Self& self, Visitor& visit) {
     visit.number(
         "system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
         "The standard deviation of the error of camera and map in the image, in addition to that of the segment.");
@@ -83,6 +193,10 @@ struct LocalizerParameters {
                  "The largest effective distance between an expected and a perceived edge that match.");
     visit.number("min_match_radius_px", self.min_match_radius_px, {1.0, 50.0}, "px",
                  "The distance to which that radius shrinks while the pose converges.");
+  }
+
+  template <class Self, class Visitor>
+  static void describe_search(Self& self, Visitor& visit) {
     visit.number("max_tracking_sigma_px", self.max_tracking_sigma_px, {0.0, 200.0}, "px",
                  "A prior whose standard deviation moves the image by at most this is tracked from one hypothesis.");
     visit.number("hypothesis_spacing_px", self.hypothesis_spacing_px, {2.0, 100.0}, "px",
@@ -98,8 +212,13 @@ struct LocalizerParameters {
                  "The number of poses around the best one that are compared with it.");
     visit.number("walks", self.walks, {0, 20}, "",
                  "The number of times that this comparison starts again from a better neighbour.");
+  }
+
+  template <class Self, class Visitor>
+  static void describe_gate(Self& self, Visitor& visit) {
     visit.number("min_matches", self.min_matches, {2, 1000}, "",
-                 "The gate requires at least this many matches; when tracking from a narrow prior, two are enough.");
+                 "The gate requires at least this many matches; when tracking from a narrow prior, "
+                 "decision.min_tracking_expected are enough.");
     visit.number("min_tracking_matched_ratio", self.min_tracking_matched_ratio, {0.0, 1.0}, "",
                  "The gate requires at least this matched-length ratio when tracking from a narrow prior, so that a "
                  "hidden map moves no pose.");
@@ -111,13 +230,11 @@ struct LocalizerParameters {
                  "The gate accepts at most this squared Mahalanobis distance to the prior.");
     visit.number("max_sigma_m", self.max_sigma_m, {0.001, 10.0}, "m",
                  "The gate accepts at most this standard deviation in the position's worst direction after a search, "
-                 "scaled by 0.3 to 1.2 depending on the evidence.");
+                 "scaled by decision.min_sigma_ratio to decision.max_sigma_ratio depending on the evidence.");
     visit.number("max_sigma_deg", self.max_sigma_deg, {0.01, 90.0}, "deg",
                  "The gate accepts at most this standard deviation about the worst axis of rotation after a search.");
     visit.number("max_rms_px", self.max_rms_px, {0.1, 50.0}, "px",
                  "The gate accepts at most this root mean square of the distances of the matches.");
-    visit.number("max_pieces", self.max_pieces, {16, 20000}, "",
-                 "The largest number of visible edge pieces; the nearest and longest ones are kept.");
   }
 };
 

@@ -13,13 +13,14 @@ constexpr double kNearest = 1.8;             // sigmas
 constexpr double kNearAlternative_px = 4.0;  // a pose that is further off and as good leaves the answer open
 constexpr float kNearRadius = 0.6F;          // of the first start's
 
-float rank_of(const Estimate& estimate) {
-  return estimate.solved ? evidence_of(estimate, Standing{}) : -10.0F;
-}
-
 }  // namespace
 
-NearStarts::NearStarts(Alternation& alternation) : alternation_(&alternation), refinement_(alternation) {}
+NearStarts::NearStarts(const GateParameters& parameters, Alternation& alternation)
+    : parameters_(parameters), alternation_(&alternation), refinement_(alternation) {}
+
+float NearStarts::rank_of(const Estimate& estimate) const {
+  return estimate.solved ? evidence_of(estimate, Standing{}, parameters_) : -10.0F;
+}
 
 void NearStarts::begin(const Belief& belief, const PriorShape& shape, const AlternateOptions& options) {
   running_ = true;
@@ -76,7 +77,7 @@ void NearStarts::verdict() {
     if (!other.solved) continue;
     const geometry::Vector6d step = geometry::step_between(best_.solution.X_WC, other.solution.X_WC);
     if (step.dot(metric_ * step) > kNearAlternative_px * kNearAlternative_px &&
-        !same_answer(best_.solution.X_WC, other.solution.X_WC))
+        !same_answer(best_.solution.X_WC, other.solution.X_WC, parameters_))
       lead_ = std::min(lead_, rank_of(best_) - rank_of(other));
   }
 }

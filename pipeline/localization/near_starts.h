@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "pipeline/localization/alternate.h"
+#include "pipeline/localization/localizer_parameters.h"
 #include "pipeline/localization/refinement.h"
 #include "pipeline/localization/search.h"
 
@@ -14,7 +15,7 @@ namespace cgsr::localization {
 /// Ours: Alg. 4.1 starts from one pose.
 class NearStarts {
  public:
-  explicit NearStarts(Alternation& alternation);
+  NearStarts(const GateParameters& parameters, Alternation& alternation);
 
   /// Begins anew about a prior that has been looked at from its mean. \param options  of the first start.
   void begin(const Belief& belief, const PriorShape& shape, const AlternateOptions& options);
@@ -34,8 +35,10 @@ class NearStarts {
   static constexpr std::uint32_t kStarts = 9;  ///< the prior's mean among them.
 
   [[nodiscard]] geometry::Pose start(std::uint32_t number) const;
+  [[nodiscard]] float rank_of(const Estimate& estimate) const;
   void verdict();
 
+  GateParameters parameters_;
   Alternation* alternation_;
   Refinement refinement_;
   AlternateOptions options_;

@@ -13,7 +13,6 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kTiltKept = 0.9997;  // from image to image
 
 // An error that is the same share of every step adds up along the way: what this step adds to the variance.
 double grown(double share, double before, double step) {
@@ -95,6 +94,7 @@ void PoseTracker::moved(const Pose& X_R0R1) {
 // third of a degree looks like a heading that is off by one. It is forgotten slowly, back to what was told. The camera stays
 // above where it was: turned about the wheels instead, a mount that is told wrong would push it aside at every image.
 void PoseTracker::flatten() {
+  const double kept = parameters_.tilt_kept;
   const Eigen::Vector3d axle(0.0, 0.0, axle_height_m_);
   Pose tilt = Pose::Identity();
   tilt.linear() = Eigen::AngleAxisd(pitch_rad_, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -103,7 +103,7 @@ void PoseTracker::flatten() {
   const Pose level = geometry::pose_on_floor(0.0, 0.0, geometry::heading_of(X_WR)) * tilt * X_RC_;
   Eigen::Vector3d off_level = geometry::vector_of(now_.X_WC.linear() * level.linear().transpose());
   off_level.z() = 0.0;
-  now_.X_WC.linear() = geometry::rotation_of(kTiltKept * off_level) * level.linear();
+  now_.X_WC.linear() = geometry::rotation_of(kept * off_level) * level.linear();
   now_.X_WC.translation().z() = level.translation().z();
 
   Matrix6d& covariance = belief_;
@@ -113,9 +113,9 @@ void PoseTracker::flatten() {
   const double tilt_rad = parameters_.tilt_deg * kDegree;
   const double level_rad = parameters_.level_deg * kDegree;
   for (const int i : {3, 4}) {
-    covariance.row(i) *= kTiltKept;
-    covariance.col(i) *= kTiltKept;
-    const double forgotten = (1.0 - kTiltKept * kTiltKept) * tilt_rad * tilt_rad;
+    covariance.row(i) *= kept;
+    covariance.col(i) *= kept;
+    const double forgotten = (1.0 - kept * kept) * tilt_rad * tilt_rad;
     covariance(i, i) = std::max(covariance(i, i) + forgotten, level_rad * level_rad);
   }
 }

@@ -14,6 +14,7 @@ struct PoseTrackerParameters {
   double drift_m = 0.0005;
   double drift_deg = 0.1;
   double tilt_deg = 0.5;
+  double tilt_kept = 0.9997;
   double level_deg = 0.1;
   double height_m = 0.01;
   bool floor = true;
@@ -37,6 +38,9 @@ struct PoseTrackerParameters {
     visit.number(
         "tilt_deg", self.tilt_deg, {0.01, 30.0}, "deg",
         "The standard deviation of the mount's roll and pitch at the start, on a floor; it decreases with the images.");
+    visit.number("tilt_kept", self.tilt_kept, {0.0, 1.0}, "",
+                 "The share of the observed deviation from the mount's roll and pitch that is kept from image to "
+                 "image, on a floor.");
     visit.number("level_deg", self.level_deg, {0.001, 30.0}, "deg",
                  "The smallest standard deviation of roll and pitch, on a floor; it covers uneven floor and the error "
                  "of the base's pitch.");

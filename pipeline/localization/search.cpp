@@ -250,7 +250,7 @@ void Search::verdict() {
   best_ = judged_[0];
   for (std::size_t i = 1; i < count; ++i) {
     if (motion_between(best_.solution.X_WC, judged_[i].solution.X_WC) <= kAlternative_px ||
-        same_answer(best_.solution.X_WC, judged_[i].solution.X_WC))
+        same_answer(best_.solution.X_WC, judged_[i].solution.X_WC, parameters_.decision))
       continue;
     lead_ = std::min(lead_, rank_of(best_) - rank_of(judged_[i]));
     break;

@@ -31,6 +31,20 @@ TEST(Gate, LetsThroughWhatIsSure) {
   EXPECT_EQ(judged(good()), Reason::kNone);
 }
 
+TEST(Gate, DecidesByItsParameters) {
+  const Estimate estimate = good();
+  const geometry::Matrix6d covariance = covariance_in_map(estimate);
+  const auto judged_by = [&](auto change) {
+    LocalizerParameters parameters;
+    change(parameters.decision);
+    return gate(estimate, Standing{0.2F, 2.0}, covariance, parameters);
+  };
+  EXPECT_EQ(judged_by([](GateParameters&) {}), Reason::kNone);
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.min_expected = 21; }), Reason::kNothingExpected);
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.prior_weight = 0.5; }), Reason::kUnexplained);
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.max_sigma_ratio = 0.0; }), Reason::kUncertain);
+}
+
 TEST(Gate, AsksForMoreEvidenceTheWiderASearchedPoseIs) {
   const auto known_to = [](double sigma_m, float agreement) {
     Estimate estimate = good();
