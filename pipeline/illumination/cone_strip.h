@@ -1,13 +1,15 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
 #include "pipeline/illumination/board.h"
 #include "pipeline/illumination/luma_view.h"
 #include "pipeline/illumination/probe_shadow.h"
-#include "pipeline/illumination/soft_step.h"
+#include "pipeline/illumination/strip_model.h"
 
 namespace cgsr::illumination {
 
@@ -27,11 +29,9 @@ class ConeStrip {
             ProbeShadow& shadow);
 
  private:
-  static constexpr int kPlaces = 36;
+  static constexpr int kPlaces = StripModel::kPlaces;
   static constexpr int kAcross = 14;
-  static constexpr int kUnknowns = 10;
-  using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
-  using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  using Unknowns = StripModel::Unknowns;
 
   // From where the outline leaves the base: x along it, y away from the cone.
   struct Frame {
@@ -40,19 +40,26 @@ class ConeStrip {
     Eigen::Vector2d outward;
     double px_per_m = 1000.0;  // across
   };
-  struct Sample {
-    Eigen::Vector2f at;
-    float value;
-    int place;
+  struct Fit {
+    Unknowns x = Unknowns::Zero();
+    StripModel::Sums sums;
+    double variance = 1.0;  // of a sample, grey levels squared
+    StripModel::Normal H = StripModel::Normal::Zero();
   };
-  struct Sums {
-    Normal H = Normal::Zero();
-    Unknowns g = Unknowns::Zero();
-    double squares = 0.0;
-    double weights = 0.0;
+  struct Ends {
+    std::array<std::size_t, 2> place{};
+    std::array<float, 2> fall{};  ///< how much is missing before and not behind it; the larger one first.
+  };
+  // Sums of the squared share that a shadow hides, and of its product with the residual.
+  struct ShadowMatch {
+    float hh = 0.0F;
+    float hr = 0.0F;
   };
 
-  [[nodiscard]] bool seen(const Eigen::Vector2d& p_B, const std::array<Outline, kMostProbes>& behind) const;
+  [[nodiscard]] std::span<const StripSample> samples() const {
+    return {samples_.data(), static_cast<std::size_t>(sample_count_)};
+  }
+  [[nodiscard]] bool is_seen(const Eigen::Vector2d& p_B, const std::array<Outline, kMostProbes>& behind) const;
   [[nodiscard]] bool may_be(const LumaView& image, const BoardView& view,
                             const std::array<Outline, kMostProbes>& behind, const Frame& frame) const;
   int choose_samples(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
@@ -60,25 +67,26 @@ class ConeStrip {
   [[nodiscard]] bool fit_side(const LumaView& image, const BoardView& view,
                               const std::array<Outline, kMostProbes>& behind, std::size_t side, ProbeShadow& shadow,
                               double& gain);
-  [[nodiscard]] Sums sum_up(const Unknowns& x, int count, bool with_shadow, bool darker_counts, int every) const;
-  struct Ends {
-    std::array<std::size_t, 2> place{};
-    std::array<float, 2> fall{};  ///< how much is missing before and not behind it; the larger one first.
-  };
+  [[nodiscard]] std::optional<Frame> frame_beside(const BoardView& view, const Outline& outline,
+                                                  std::size_t side) const;
+  [[nodiscard]] std::optional<Unknowns> first_guess(const Frame& frame) const;
+  [[nodiscard]] bool solve(Fit& fit, const StripModel::Pass& pass) const;
   static Ends ends_of(const std::array<float, kPlaces>& missing);
-  [[nodiscard]] bool start_from(Unknowns& x, int count) const;
-  [[nodiscard]] bool is_shown(const Unknowns& x, int count) const;
-  [[nodiscard]] float hidden(const Eigen::Vector2f& from_foot, const Outline& outline, float over_length,
-                             float blur_m) const;
+  [[nodiscard]] bool guess_tip(Unknowns& x) const;
+  [[nodiscard]] ShadowMatch match_shadow(const Unknowns& from, const Eigen::Vector2d& tip,
+                                         std::span<const float> residual) const;
+  [[nodiscard]] std::optional<double> gain_of(const Fit& fit) const;
+  [[nodiscard]] bool is_shown(const Unknowns& x) const;
+  [[nodiscard]] bool is_plausible(const Fit& fit) const;
+  [[nodiscard]] bool place_shadow(const Fit& fit, const Frame& frame, const BoardView& view, ProbeShadow& shadow) const;
 
   Board board_;
   Probe probe_;
   int index_;
   ShadowParameters parameters_;
-  double lamp_height_m_;
-  SoftStep step_;
-  std::array<Sample, static_cast<std::size_t>(kPlaces) * kAcross> samples_{};
-  float blur_m_ = 0.001F;
+  StripModel model_;
+  std::array<StripSample, static_cast<std::size_t>(kPlaces) * kAcross> samples_{};
+  int sample_count_ = 0;
 };
 
 }  // namespace cgsr::illumination

@@ -162,6 +162,45 @@ ShadowModel shadow_of(const Vector3d& p_BL, const Vector3d& p_BA) {
   return model;
 }
 
+namespace {
+
+// The shadows together; the ray or plane of each alone is where the fit begins.
+struct Rays {
+  std::array<Vector3d, kMostProbes> alone;
+  int count = 0;   // shadows of two lines
+  int first = -1;  // the probe whose shadow has most lines
+};
+
+Rays rays_of(const Board& board, const LampParameters& parameters,
+             const std::array<const ProbeShadow*, kMostProbes>& shadow, LampEstimate& estimate) {
+  Rays rays;
+  for (std::size_t i = 0; i < kMostProbes; ++i) {
+    if (shadow[i] == nullptr) continue;
+    estimate.probes |= 1 << i;
+    estimate.lines += shadow[i]->lines;
+    rays.alone[i] = start_from(board, parameters.height_m, *shadow[i], i);
+    if (shadow[i]->lines == 2) ++rays.count;
+    if (rays.first < 0 || shadow[i]->lines > shadow[static_cast<std::size_t>(rays.first)]->lines)
+      rays.first = static_cast<int>(i);
+  }
+  return rays;
+}
+
+// Where two rays come nearest, whatever the height.
+void triangulate(const Board& board, const LampParameters& parameters,
+                 const std::array<const ProbeShadow*, kMostProbes>& shadow,
+                 const geometry::Matrix6d& registration_covariance, LampEstimate& estimate) {
+  const Fit free =
+      fit_lamp(board, parameters.height_m, kUnknownHeight_m, shadow, registration_covariance, estimate.p_RL);
+  if (!free.good) return;
+  estimate.triangulated = true;
+  estimate.p_RL_triangulated = free.p_RL;
+  estimate.covariance_triangulated = free.covariance;
+  estimate.height_measured = free.covariance(2, 2) < parameters.height_sigma_m * parameters.height_sigma_m;
+}
+
+}  // namespace
+
 LampEstimate estimate_lamp(const Board& board, const LampParameters& parameters,
                            const std::array<const ProbeShadow*, kMostProbes>& shadow,
                            const geometry::Matrix6d& registration_covariance) {
@@ -170,25 +209,15 @@ LampEstimate estimate_lamp(const Board& board, const LampParameters& parameters,
     estimate.status = LampStatus::kBelowTips;
     return estimate;
   }
-  std::array<Vector3d, kMostProbes> alone;
-  int rays = 0;
-  int first = -1;
-  for (std::size_t i = 0; i < kMostProbes; ++i) {
-    if (shadow[i] == nullptr) continue;
-    estimate.probes |= 1 << i;
-    estimate.lines += shadow[i]->lines;
-    alone[i] = start_from(board, parameters.height_m, *shadow[i], i);
-    if (shadow[i]->lines == 2) ++rays;
-    if (first < 0 || shadow[i]->lines > shadow[static_cast<std::size_t>(first)]->lines) first = static_cast<int>(i);
-  }
-  if (first < 0) return estimate;
-  if (rays == 2 && (alone[0] - alone[1]).norm() > parameters.max_disagreement_m) {
+  const Rays rays = rays_of(board, parameters, shadow, estimate);
+  if (rays.first < 0) return estimate;
+  if (rays.count == 2 && (rays.alone[0] - rays.alone[1]).norm() > parameters.max_disagreement_m) {
     estimate.status = LampStatus::kDisagree;
     return estimate;
   }
-  const auto begin = alone[static_cast<std::size_t>(first)];
-  const Fit fit =
-      fit_lamp(board, parameters.height_m, parameters.height_sigma_m, shadow, registration_covariance, begin);
+  const auto first = static_cast<std::size_t>(rays.first);
+  const Fit fit = fit_lamp(board, parameters.height_m, parameters.height_sigma_m, shadow, registration_covariance,
+                           rays.alone[first]);
   if (!fit.good) {
     estimate.status = LampStatus::kDisagree;
     return estimate;
@@ -196,37 +225,36 @@ LampEstimate estimate_lamp(const Board& board, const LampParameters& parameters,
   estimate.p_RL = fit.p_RL;
   estimate.covariance = fit.covariance;
   // A plane and a ray, or two planes, that do not fit each other.
-  if (estimate.probes == 3 && rays < 2 && fit.chi2 > kMostPlausibleChi2) {
+  if (estimate.probes == 3 && rays.count < 2 && fit.chi2 > kMostPlausibleChi2) {
     estimate.status = LampStatus::kDisagree;
     return estimate;
   }
   estimate.status = estimate.lines >= 2 ? LampStatus::kFound : LampStatus::kPartial;
-  if (rays == 2) {
-    const Fit free = fit_lamp(board, parameters.height_m, kUnknownHeight_m, shadow, registration_covariance, fit.p_RL);
-    if (free.good) {
-      estimate.triangulated = true;
-      estimate.p_RL_triangulated = free.p_RL;
-      estimate.covariance_triangulated = free.covariance;
-      estimate.height_measured = free.covariance(2, 2) < parameters.height_sigma_m * parameters.height_sigma_m;
-    }
-  }
+  if (rays.count == 2) triangulate(board, parameters, shadow, registration_covariance, estimate);
   const Vector3d to_lamp = board.X_RB.inverse() * estimate.p_RL;
-  const Vector2d flat = to_lamp.head<2>() - board.probe[static_cast<std::size_t>(first)].p_BA.head<2>();
+  const Vector2d flat = to_lamp.head<2>() - board.probe[first].p_BA.head<2>();
   estimate.angle_rad = std::atan2(flat.norm(), to_lamp.z());
   return estimate;
 }
 
-LampEstimates locate_lamps(const Board& board, const LampParameters& parameters, const ProbeObservation& observation) {
-  LampEstimates all;
-  if (observation.status != ObservationStatus::kSeen) return all;
+namespace {
+
+// Which shadows have become lamps as pairs, and why the last pair that did not was refused.
+struct Pairs {
   std::array<std::array<bool, ShadowFinder::kMostShadows>, kMostProbes> used{};
-  const auto shadow_at = [&](int probe, int k) -> const ProbeShadow* {
-    return &observation.probe[static_cast<std::size_t>(probe)].shadow[static_cast<std::size_t>(k)];
-  };
+  LampStatus refusal = LampStatus::kNoShadow;
+};
+
+const ProbeShadow& shadow_at(const ProbeObservation& observation, std::size_t probe, int k) {
+  return observation.probe[probe].shadow[static_cast<std::size_t>(k)];
+}
+
+// Pairs first, the one whose rays meet best before the other.
+Pairs pair_shadows(const Board& board, const LampParameters& parameters, const ProbeObservation& observation,
+                   LampEstimates& all) {
+  Pairs pairs;
   const int left = observation.probe[0].count;
   const int right = observation.probe[1].count;
-  // Pairs first, the one whose rays meet best before the other.
-  LampStatus why = LampStatus::kNoShadow;
   for (int pair = 0; pair < std::min(left, right); ++pair) {
     double best = std::numeric_limits<double>::infinity();
     LampEstimate best_estimate;
@@ -234,16 +262,18 @@ LampEstimates locate_lamps(const Board& board, const LampParameters& parameters,
     int best_right = -1;
     for (int l = 0; l < left; ++l) {
       for (int r = 0; r < right; ++r) {
-        if (used[0][static_cast<std::size_t>(l)] || used[1][static_cast<std::size_t>(r)]) continue;
+        if (pairs.used[0][static_cast<std::size_t>(l)] || pairs.used[1][static_cast<std::size_t>(r)]) continue;
+        const ProbeShadow& at_left = shadow_at(observation, 0, l);
+        const ProbeShadow& at_right = shadow_at(observation, 1, r);
         const auto estimate =
-            estimate_lamp(board, parameters, {shadow_at(0, l), shadow_at(1, r)}, observation.registration.covariance);
+            estimate_lamp(board, parameters, {&at_left, &at_right}, observation.registration.covariance);
         if (estimate.status != LampStatus::kFound) {
-          why = estimate.status;
+          pairs.refusal = estimate.status;
           continue;
         }
-        const double apart = (start_from(board, parameters.height_m, *shadow_at(0, l), 0) -
-                              start_from(board, parameters.height_m, *shadow_at(1, r), 1))
-                                 .norm();
+        const double apart =
+            (start_from(board, parameters.height_m, at_left, 0) - start_from(board, parameters.height_m, at_right, 1))
+                .norm();
         if (apart >= best) continue;
         best = apart;
         best_estimate = estimate;
@@ -252,31 +282,39 @@ LampEstimates locate_lamps(const Board& board, const LampParameters& parameters,
       }
     }
     if (best_left < 0) break;
-    used[0][static_cast<std::size_t>(best_left)] = used[1][static_cast<std::size_t>(best_right)] = true;
+    pairs.used[0][static_cast<std::size_t>(best_left)] = pairs.used[1][static_cast<std::size_t>(best_right)] = true;
     all.lamp[static_cast<std::size_t>(all.count++)] = best_estimate;
   }
+  return pairs;
+}
+
+}  // namespace
+
+LampEstimates locate_lamps(const Board& board, const LampParameters& parameters, const ProbeObservation& observation) {
+  LampEstimates all;
+  if (observation.status != ObservationStatus::kSeen) return all;
+  Pairs pairs = pair_shadows(board, parameters, observation, all);
   // Two shadows that would be one lamp's and do not meet are nobody's, but a ray is not given up for a single line.
-  if (left == 1 && right == 1 && all.count == 0) {
-    const int left_lines = shadow_at(0, 0)->lines;
-    if (left_lines == shadow_at(1, 0)->lines) {
-      all.status = why;
+  if (observation.probe[0].count == 1 && observation.probe[1].count == 1 && all.count == 0) {
+    const int left_lines = shadow_at(observation, 0, 0).lines;
+    if (left_lines == shadow_at(observation, 1, 0).lines) {
+      all.status = pairs.refusal;
       return all;
     }
-    used[left_lines == 2 ? 1 : 0][0] = true;
+    pairs.used[left_lines == 2 ? 1 : 0][0] = true;
   }
-  for (int probe = 0; probe < kMostProbes; ++probe) {
-    for (int k = 0; k < observation.probe[static_cast<std::size_t>(probe)].count; ++k) {
-      if (used[static_cast<std::size_t>(probe)][static_cast<std::size_t>(k)] || all.count >= ShadowFinder::kMostShadows)
-        continue;
+  for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
+    for (int k = 0; k < observation.probe[probe].count; ++k) {
+      if (pairs.used[probe][static_cast<std::size_t>(k)] || all.count >= ShadowFinder::kMostShadows) continue;
       std::array<const ProbeShadow*, kMostProbes> alone{};
-      alone[static_cast<std::size_t>(probe)] = shadow_at(probe, k);
+      alone[probe] = &shadow_at(observation, probe, k);
       const auto estimate = estimate_lamp(board, parameters, alone, observation.registration.covariance);
-      why = estimate.status;
+      pairs.refusal = estimate.status;
       if (estimate.status == LampStatus::kFound || estimate.status == LampStatus::kPartial)
         all.lamp[static_cast<std::size_t>(all.count++)] = estimate;
     }
   }
-  all.status = all.count > 0 ? all.lamp[0].status : why;
+  all.status = all.count > 0 ? all.lamp[0].status : pairs.refusal;
   return all;
 }
 

@@ -20,7 +20,8 @@ using Eigen::Vector3d;
 constexpr double kGate = 16.0;  // of one shadow, 2 degrees of freedom: 3 in 10,000 are further away
 constexpr double kRegistrationNoise =
     0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
-constexpr double kStartSigma_m = 6.0;  // along the floor, before the first shadow
+constexpr double kStartSigma_m = 6.0;     // along the floor, before the first shadow
+constexpr double kMaxOwnShadow_m = 0.05;  // of a shadow from where its lamp's first estimate puts it
 
 Matrix3d cross(const Vector3d& v) {
   Matrix3d m;
@@ -54,21 +55,17 @@ LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, co
   return prediction;
 }
 
-double LampFilter::distance(const Track& track, std::size_t probe, const ProbeShadow& shadow,
-                            const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
-                            const geometry::Matrix6d& registration) const {
-  const auto prediction = predict(track.x, probe, X_WR);
+double LampFilter::distance(const Track& track, std::size_t probe, const ProbeShadow& shadow, const Pose& pose) const {
+  const auto prediction = predict(track.x, probe, pose.X_WR);
   if (!prediction.valid) return std::numeric_limits<double>::infinity();
   const Vector2d residual = shadow.p_BS - prediction.p_BS;
   const Matrix2d S = prediction.J_state * track.P * prediction.J_state.transpose() +
-                     prediction.J_pose * pose * prediction.J_pose.transpose() + shadow.covariance +
-                     shadow.J_pose * registration * shadow.J_pose.transpose();
+                     prediction.J_pose * pose.covariance * prediction.J_pose.transpose() + shadow.covariance +
+                     shadow.J_pose * pose.registration * shadow.J_pose.transpose();
   return residual.dot(S.inverse() * residual);
 }
 
-void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMostProbes>& shadow,
-                         const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
-                         const geometry::Matrix6d& registration, int iterations) const {
+void LampFilter::correct(Track& track, const TrackShadows& shadow, const Pose& pose, int iterations) const {
   using Joint = Eigen::Matrix<double, 4, 1>;
   using Wide = Eigen::Matrix<double, 4, kState>;
   State x = track.x;
@@ -82,7 +79,7 @@ void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMos
     H.setZero();
     for (std::size_t i = 0; i < kMostProbes; ++i) {
       if (shadow[i] == nullptr) continue;
-      const auto prediction = predict(x, i, X_WR);
+      const auto prediction = predict(x, i, pose.X_WR);
       if (!prediction.valid) return;
       const auto row = static_cast<Eigen::Index>(2 * i);
       residual.segment<2>(row) = shadow[i]->p_BS - prediction.p_BS;
@@ -91,7 +88,7 @@ void LampFilter::correct(Track& track, const std::array<const ProbeShadow*, kMos
       J_camera.middleRows<2>(row) = shadow[i]->J_pose;
       V.block<2, 2>(row, row) = shadow[i]->covariance;
     }
-    V += J_pose * pose * J_pose.transpose() + J_camera * registration * J_camera.transpose();
+    V += J_pose * pose.covariance * J_pose.transpose() + J_camera * pose.registration * J_camera.transpose();
     const Eigen::Matrix4d S = H * track.P * H.transpose() + V;
     const Eigen::LLT<Eigen::Matrix4d> solver(S);
     if (solver.info() != Eigen::Success) return;
@@ -139,22 +136,21 @@ bool LampFilter::should_show(const Track& track, std::size_t probe, const geomet
   return true;
 }
 
-LampChange LampFilter::update(const ProbeObservation& observation, const geometry::Pose& X_WR,
-                              const geometry::Matrix6d& pose_covariance) {
-  LampChange change;
-  if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow)
-    return change;
-  geometry::Matrix6d pose = pose_covariance;
+LampFilter::Pose LampFilter::pose_of(const ProbeObservation& observation, const geometry::Pose& X_WR,
+                                     const geometry::Matrix6d& pose_covariance) const {
+  Pose pose{.X_WR = X_WR, .covariance = pose_covariance, .registration = observation.registration.covariance};
   const double place = parameters_.min_pose_sigma_m * parameters_.min_pose_sigma_m;
   const double turn = parameters_.min_pose_sigma_deg * std::numbers::pi / 180.0;
-  pose(0, 0) = std::max(pose(0, 0), place);
-  pose(1, 1) = std::max(pose(1, 1), place);
-  pose(5, 5) = std::max(pose(5, 5), turn * turn);
-  const geometry::Matrix6d registration = kRegistrationNoise * observation.registration.covariance;
+  pose.covariance(0, 0) = std::max(pose.covariance(0, 0), place);
+  pose.covariance(1, 1) = std::max(pose.covariance(1, 1), place);
+  pose.covariance(5, 5) = std::max(pose.covariance(5, 5), turn * turn);
+  pose.registration *= kRegistrationNoise;
+  return pose;
+}
 
-  // Whose shadow is it? The nearest pair of track and shadow first.
-  std::array<std::array<bool, ShadowFinder::kMostShadows>, kMostProbes> taken{};
-  std::array<std::array<const ProbeShadow*, kMostProbes>, kMostLamps> own{};
+// Whose shadow is it? The nearest pair of track and shadow first.
+LampFilter::Assignment LampFilter::assign(const ProbeObservation& observation, const Pose& pose) const {
+  Assignment assigned;
   for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
     const auto& found = observation.probe[probe];
     for (int round = 0; round < found.count; ++round) {
@@ -162,24 +158,31 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
       int track_of = -1;
       int shadow_of_track = -1;
       for (int t = 0; t < count_; ++t) {
-        if (own[static_cast<std::size_t>(t)][probe] != nullptr) continue;
+        if (assigned.of_track[static_cast<std::size_t>(t)][probe] != nullptr) continue;
         for (int k = 0; k < found.count; ++k) {
-          if (taken[probe][static_cast<std::size_t>(k)]) continue;
-          const double d = distance(track_[static_cast<std::size_t>(t)], probe,
-                                    found.shadow[static_cast<std::size_t>(k)], X_WR, pose, registration);
+          if (assigned.taken[probe][static_cast<std::size_t>(k)]) continue;
+          const double d =
+              distance(track_[static_cast<std::size_t>(t)], probe, found.shadow[static_cast<std::size_t>(k)], pose);
           if (d < nearest) nearest = d, track_of = t, shadow_of_track = k;
         }
       }
       if (track_of < 0) break;
-      own[static_cast<std::size_t>(track_of)][probe] = &found.shadow[static_cast<std::size_t>(shadow_of_track)];
-      taken[probe][static_cast<std::size_t>(shadow_of_track)] = true;
+      assigned.of_track[static_cast<std::size_t>(track_of)][probe] =
+          &found.shadow[static_cast<std::size_t>(shadow_of_track)];
+      assigned.taken[probe][static_cast<std::size_t>(shadow_of_track)] = true;
     }
   }
+  return assigned;
+}
+
+// A lamp is corrected by its shadows; one whose shadow should have been seen and was not is missed.
+void LampFilter::correct_tracks(const ProbeObservation& observation, const Pose& pose, const Assignment& assigned,
+                                LampChange& change) {
   for (int t = 0; t < count_; ++t) {
     Track& track = track_[static_cast<std::size_t>(t)];
-    const auto& shadow = own[static_cast<std::size_t>(t)];
+    const auto& shadow = assigned.of_track[static_cast<std::size_t>(t)];
     if (shadow[0] != nullptr || shadow[1] != nullptr) {
-      correct(track, shadow, X_WR, pose, registration, 2);
+      correct(track, shadow, pose, 2);
       ++track.known.seen;
       track.known.missed = 0;
       if (!track.known.steady && track.known.seen >= parameters_.min_steady_images) {
@@ -191,47 +194,58 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
     bool expected = false;
     for (int i = 0; i < board_.probes; ++i) {
       if ((observation.missing & (1 << i)) != 0) continue;
-      expected = expected || should_show(track, static_cast<std::size_t>(i), X_WR, observation.registration.X_BC);
+      expected = expected || should_show(track, static_cast<std::size_t>(i), pose.X_WR, observation.registration.X_BC);
     }
     if (expected) ++track.known.missed;
   }
-  // Shadows of nobody known begin a lamp of their own.
+}
+
+// Shadows of no known lamp begin a lamp of their own.
+void LampFilter::start_tracks(const ProbeObservation& observation, const Pose& pose, const Assignment& assigned,
+                              LampChange& change) {
   ProbeObservation rest = observation;
   int left_over = 0;
   for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
     rest.probe[probe].count = 0;
     for (int k = 0; k < observation.probe[probe].count; ++k) {
-      if (taken[probe][static_cast<std::size_t>(k)]) continue;
+      if (assigned.taken[probe][static_cast<std::size_t>(k)]) continue;
       rest.probe[probe].shadow[static_cast<std::size_t>(rest.probe[probe].count++)] =
           observation.probe[probe].shadow[static_cast<std::size_t>(k)];
       ++left_over;
     }
   }
-  if (left_over > 0) {
-    const auto lamps = locate_lamps(board_, parameters_, rest);
-    for (int i = 0; i < lamps.count && count_ < kMostLamps; ++i) {
-      const LampEstimate& estimate = lamps.lamp[static_cast<std::size_t>(i)];
-      if (estimate.status != LampStatus::kFound) continue;
-      Track track = started(estimate, X_WR);
-      // Its own shadows: those that fit where the estimate puts it.
-      std::array<const ProbeShadow*, kMostProbes> shadow{};
-      for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
-        if ((estimate.probes & (1 << probe)) == 0) continue;
-        const auto model = shadow_of(board_.X_RB.inverse() * estimate.p_RL, board_.probe[probe].p_BA);
-        double nearest = 0.05;
-        for (int k = 0; k < rest.probe[probe].count; ++k) {
-          const ProbeShadow& candidate = rest.probe[probe].shadow[static_cast<std::size_t>(k)];
-          const double apart = (candidate.p_BS - model.p_BS).norm();
-          if (apart < nearest) nearest = apart, shadow[probe] = &candidate;
-        }
-      }
-      correct(track, shadow, X_WR, pose, registration, 4);
-      track.known.seen = 1;
-      track.known.steady = parameters_.min_steady_images <= 1;
-      change.found = change.found || track.known.steady;
-      track_[static_cast<std::size_t>(count_++)] = track;
+  if (left_over == 0) return;
+  const auto lamps = locate_lamps(board_, parameters_, rest);
+  for (int i = 0; i < lamps.count && count_ < kMostLamps; ++i) {
+    const LampEstimate& estimate = lamps.lamp[static_cast<std::size_t>(i)];
+    if (estimate.status != LampStatus::kFound) continue;
+    Track track = started(estimate, pose.X_WR);
+    correct(track, shadows_of(estimate, rest), pose, 4);
+    track.known.seen = 1;
+    track.known.steady = parameters_.min_steady_images <= 1;
+    change.found = change.found || track.known.steady;
+    track_[static_cast<std::size_t>(count_++)] = track;
+  }
+}
+
+// An estimate's own shadows: those nearest to where it puts them.
+LampFilter::TrackShadows LampFilter::shadows_of(const LampEstimate& estimate,
+                                                const ProbeObservation& observation) const {
+  TrackShadows shadow{};
+  for (std::size_t probe = 0; probe < kMostProbes; ++probe) {
+    if ((estimate.probes & (1 << probe)) == 0) continue;
+    const auto model = shadow_of(board_.X_RB.inverse() * estimate.p_RL, board_.probe[probe].p_BA);
+    double nearest = kMaxOwnShadow_m;
+    for (int k = 0; k < observation.probe[probe].count; ++k) {
+      const ProbeShadow& candidate = observation.probe[probe].shadow[static_cast<std::size_t>(k)];
+      const double apart = (candidate.p_BS - model.p_BS).norm();
+      if (apart < nearest) nearest = apart, shadow[probe] = &candidate;
     }
   }
+  return shadow;
+}
+
+void LampFilter::drop_missed_tracks(LampChange& change) {
   for (int t = 0; t < count_;) {
     Track& track = track_[static_cast<std::size_t>(t)];
     track.known.p_WL = track.x.head<3>();
@@ -244,6 +258,18 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
     change.gone = change.gone || track.known.steady;
     track_[static_cast<std::size_t>(t)] = track_[static_cast<std::size_t>(--count_)];
   }
+}
+
+LampChange LampFilter::update(const ProbeObservation& observation, const geometry::Pose& X_WR,
+                              const geometry::Matrix6d& pose_covariance) {
+  LampChange change;
+  if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow)
+    return change;
+  const Pose pose = pose_of(observation, X_WR, pose_covariance);
+  const Assignment assigned = assign(observation, pose);
+  correct_tracks(observation, pose, assigned, change);
+  start_tracks(observation, pose, assigned, change);
+  drop_missed_tracks(change);
   const auto before = [](const Track& a, const Track& b) {
     if (a.known.steady != b.known.steady) return a.known.steady;
     return a.known.seen > b.known.seen;

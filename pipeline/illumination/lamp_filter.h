@@ -62,12 +62,31 @@ class LampFilter {
     bool valid = false;
   };
 
+  // The robot's pose in an image, with the errors that change from image to image.
+  struct Pose {
+    geometry::Pose X_WR;
+    geometry::Matrix6d covariance;    // of X_WR
+    geometry::Matrix6d registration;  // of the camera against the board
+  };
+  using TrackShadows = std::array<const ProbeShadow*, kMostProbes>;
+  struct Assignment {
+    std::array<TrackShadows, kMostLamps> of_track{};
+    std::array<std::array<bool, ShadowFinder::kMostShadows>, kMostProbes> taken{};
+  };
+
   [[nodiscard]] Prediction predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const;
+  [[nodiscard]] Pose pose_of(const ProbeObservation& observation, const geometry::Pose& X_WR,
+                             const geometry::Matrix6d& pose_covariance) const;
+  [[nodiscard]] Assignment assign(const ProbeObservation& observation, const Pose& pose) const;
+  void correct_tracks(const ProbeObservation& observation, const Pose& pose, const Assignment& assigned,
+                      LampChange& change);
+  void start_tracks(const ProbeObservation& observation, const Pose& pose, const Assignment& assigned,
+                    LampChange& change);
+  [[nodiscard]] TrackShadows shadows_of(const LampEstimate& estimate, const ProbeObservation& observation) const;
+  void drop_missed_tracks(LampChange& change);
   [[nodiscard]] double distance(const Track& track, std::size_t probe, const ProbeShadow& shadow,
-                                const geometry::Pose& X_WR, const geometry::Matrix6d& pose,
-                                const geometry::Matrix6d& registration) const;
-  void correct(Track& track, const std::array<const ProbeShadow*, kMostProbes>& shadow, const geometry::Pose& X_WR,
-               const geometry::Matrix6d& pose, const geometry::Matrix6d& registration, int iterations) const;
+                                const Pose& pose) const;
+  void correct(Track& track, const TrackShadows& shadow, const Pose& pose, int iterations) const;
   [[nodiscard]] bool should_show(const Track& track, std::size_t probe, const geometry::Pose& X_WR,
                                  const geometry::Pose& X_BC) const;
   Track started(const LampEstimate& estimate, const geometry::Pose& X_WR) const;

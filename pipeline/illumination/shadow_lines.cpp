@@ -190,72 +190,82 @@ bool ShadowFinder::may_be_middle(int ray) const {
   return false;
 }
 
+bool ShadowFinder::is_near_tried(const std::array<int, 4>& tried, int tried_count, int ray) {
+  for (int i = 0; i < tried_count; ++i) {
+    const int apart = std::abs(tried[static_cast<std::size_t>(i)] - ray);
+    if (std::min(apart, kRays - apart) <= 3) return true;
+  }
+  return false;
+}
+
+// Compares the wedges of some lengths with the brightness about a ray, and keeps the one that explains most of it.
+void ShadowFinder::compare_wedges(int ray, const Lengths& lengths, Candidate& best) const {
+  float n = 0.0F;
+  float v = 0.0F;
+  for (int d = -kHalfWindow; d <= kHalfWindow; ++d) {
+    const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
+    n += ray_valid_[k];
+    v += ray_value_[k];
+  }
+  if (n < 30.0F) return;
+  const float mean = v / n;
+  for (int length = lengths.first; length < lengths.end; length += lengths.step) {
+    // Lane by lane, so that four rings are one instruction.
+    Ring m{};
+    Ring mm{};
+    Ring mv{};
+    for (int d = -kHalfWedge; d <= kHalfWedge; ++d) {
+      const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
+      const auto s = static_cast<std::size_t>(length * (2 * kHalfWedge + 1) + d + kHalfWedge);
+      for (std::size_t ring = 0; ring < kRings; ++ring) {
+        m[ring] += shape_[s][ring] * valid_[k][ring];
+        mm[ring] += shape_square_[s][ring] * valid_[k][ring];
+        mv[ring] += shape_[s][ring] * value_[k][ring];
+      }
+    }
+    const float sum = total(m);
+    const float variance = total(mm) - sum * sum / n;
+    if (sum < 1.5F || variance < 0.8F) continue;
+    const float covariance = total(mv) - sum * mean;
+    if (covariance >= 0.0F) continue;  // a shadow is dark
+    const float explained = covariance * covariance / variance;
+    if (explained <= best.score) continue;
+    best.score = explained;
+    best.ray = ray;
+    best.length = length;
+    best.contrast = static_cast<double>(-covariance / variance);
+  }
+}
+
 ShadowFinder::Candidate ShadowFinder::best_candidate(const std::array<int, 4>& tried, int tried_count,
                                                      bool everywhere) const {
   Candidate best;
-  float best_score = 0.0F;
   const auto may_be = [&](int ray) {
-    for (int i = 0; i < tried_count; ++i) {
-      const int apart = std::abs(tried[static_cast<std::size_t>(i)] - ray);
-      if (std::min(apart, kRays - apart) <= 3) return false;
-    }
-    return everywhere || may_be_middle(ray);
-  };
-  int best_length = 0;
-  const auto compare = [&](int ray, int from, int to, int step) {
-    float n = 0.0F;
-    float v = 0.0F;
-    for (int d = -kHalfWindow; d <= kHalfWindow; ++d) {
-      const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
-      n += ray_valid_[k];
-      v += ray_value_[k];
-    }
-    if (n < 30.0F) return;
-    const float mean = v / n;
-    for (int length = from; length < to; length += step) {
-      // Lane by lane, so that four rings are one instruction.
-      Ring m{};
-      Ring mm{};
-      Ring mv{};
-      for (int d = -kHalfWedge; d <= kHalfWedge; ++d) {
-        const auto k = static_cast<std::size_t>((ray + d + kRays) % kRays);
-        const auto s = static_cast<std::size_t>(length * (2 * kHalfWedge + 1) + d + kHalfWedge);
-        for (std::size_t ring = 0; ring < kRings; ++ring) {
-          m[ring] += shape_[s][ring] * valid_[k][ring];
-          mm[ring] += shape_square_[s][ring] * valid_[k][ring];
-          mv[ring] += shape_[s][ring] * value_[k][ring];
-        }
-      }
-      const float sum = total(m);
-      const float variance = total(mm) - sum * sum / n;
-      if (sum < 1.5F || variance < 0.8F) continue;
-      const float covariance = total(mv) - sum * mean;
-      if (covariance >= 0.0F) continue;  // a shadow is dark
-      const float explained = covariance * covariance / variance;
-      if (explained <= best_score) continue;
-      best_score = explained;
-      best_length = length;
-      best.score = static_cast<double>(explained);
-      best.ray = ray;
-      best.start.contrast = static_cast<double>(-covariance / variance);
-      best.start.level = plane_[0];
-      const double angle = 2.0 * kPi * ray / kRays;
-      best.start.tip_shadow =
-          probe_.foot_B + length_m_[static_cast<std::size_t>(length)] * Vector2d(std::cos(angle), std::sin(angle));
-    }
+    return !is_near_tried(tried, tried_count, ray) && (everywhere || may_be_middle(ray));
   };
   // Every second ray and every third length, then what lies about the best of them.
+  const Lengths coarse = everywhere ? Lengths{0, kLengths, 1} : Lengths{1, kLengths, 3};
   for (int ray = 0; ray < kRays; ray += everywhere ? 1 : 2) {
-    if (may_be(ray)) compare(ray, everywhere ? 0 : 1, kLengths, everywhere ? 1 : 3);
+    if (may_be(ray)) compare_wedges(ray, coarse, best);
   }
   if (everywhere || best.ray < 0) return best;
   const int ray = best.ray;
-  const int length = best_length;
+  const Lengths fine{std::max(0, best.length - 2), std::min(kLengths, best.length + 3), 1};
   for (int d = -1; d <= 1; ++d) {
     const int beside = (ray + d + kRays) % kRays;
-    if (d == 0 || may_be(beside)) compare(beside, std::max(0, length - 2), std::min(kLengths, length + 3), 1);
+    if (d == 0 || may_be(beside)) compare_wedges(beside, fine, best);
   }
   return best;
+}
+
+ShadowStart ShadowFinder::start_of(const Candidate& candidate) const {
+  ShadowStart start;
+  const double angle = 2.0 * kPi * candidate.ray / kRays;
+  start.tip_shadow = probe_.foot_B +
+                     length_m_[static_cast<std::size_t>(candidate.length)] * Vector2d(std::cos(angle), std::sin(angle));
+  start.contrast = candidate.contrast;
+  start.level = plane_[0];
+  return start;
 }
 
 // How much brighter than the plane a place of the board is; nothing where it is not seen.
@@ -418,15 +428,15 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
   while (tried_count < 4 && found.count < kMostShadows) {
     sum_rays();
     const Candidate candidate = best_candidate(tried, tried_count, everywhere_);
-    if (candidate.ray < 0 || candidate.score < kLeastScore ||
-        candidate.start.contrast < 0.5 * parameters_.min_contrast ||
-        candidate.start.contrast < 0.5 * parameters_.min_contrast_ratio * plane_[0] ||
-        (found.count > 0 && candidate.start.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
+    if (candidate.ray < 0 || static_cast<double>(candidate.score) < kLeastScore ||
+        candidate.contrast < 0.5 * parameters_.min_contrast ||
+        candidate.contrast < 0.5 * parameters_.min_contrast_ratio * plane_[0] ||
+        (found.count > 0 && candidate.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
       break;
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;
     ProbeShadow shadow;
-    if (!fit_either(image, view, candidate.start, shadow)) continue;
+    if (!fit_either(image, view, start_of(candidate), shadow)) continue;
     bool known = false;
     for (int i = 0; i < found.count; ++i) {
       const ProbeShadow& other = found.shadow[static_cast<std::size_t>(i)];

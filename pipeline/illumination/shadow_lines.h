@@ -46,10 +46,17 @@ class ShadowFinder {
   static constexpr int kLengths = 10;
   using Ring = std::array<float, kRings>;
 
+  // A wedge that is dark: its ray, its length as an index of length_m_, how much of the brightness about the ray it explains.
   struct Candidate {
-    ShadowStart start;
     int ray = -1;
-    double score = 0.0;
+    int length = 0;
+    float score = 0.0F;
+    double contrast = 0.0;  // grey levels
+  };
+  struct Lengths {
+    int first;
+    int end;
+    int step;
   };
 
   // Along a shadow's axis, as far as the board reaches.
@@ -64,6 +71,9 @@ class ShadowFinder {
   [[nodiscard]] double noise() const;
   void look_around(const LumaView& image, const BoardView& view);
   [[nodiscard]] Candidate best_candidate(const std::array<int, 4>& tried, int tried_count, bool everywhere) const;
+  [[nodiscard]] ShadowStart start_of(const Candidate& candidate) const;
+  static bool is_near_tried(const std::array<int, 4>& tried, int tried_count, int ray);
+  void compare_wedges(int ray, const Lengths& lengths, Candidate& best) const;
   [[nodiscard]] bool may_be_middle(int ray) const;
   [[nodiscard]] std::optional<double> off_plane(const LumaView& image, const BoardView& view,
                                                 const Eigen::Vector2d& from_foot) const;

@@ -10,11 +10,12 @@
 namespace cgsr::illumination {
 namespace {
 
-constexpr double kLeastDifference = 4.0;  // grey levels, mean over the board
-constexpr double kMostMoved_m = 0.004;
-constexpr double kMostTurned_rad = 0.006;
+constexpr double kMinDifference = 4.0;  // grey levels, mean over the board
+constexpr double kMaxMotion_m = 0.004;
+constexpr double kMaxRotation_rad = 0.006;
+constexpr double kMinAboveTip_m = 0.05;
 constexpr double kBound = 13.8;  // chi-square, 2 degrees of freedom: one in a thousand is further off
-constexpr int kAlong = 6;        // places of the board that are looked at
+constexpr int kAlong = 6;        // places of the board that are compared
 constexpr int kAcross = 12;
 
 }  // namespace
@@ -49,29 +50,24 @@ SwitchChecker::SwitchChecker(const Board& board, const ProbesParameters& paramet
   for (int i = 0; i < board.probes; ++i) finders_.emplace_back(board, i, parameters.shadow, lamp_height_m);
 }
 
-SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, const Eigen::Vector3d& p_RL,
-                                 double lamp_sigma_m) {
-  SwitchCheck check;
+bool SwitchChecker::can_compare(const ImageView& on, const ImageView& off) const {
   for (const ImageView* image : {&on, &off}) {
     if (image->empty() || image->format == PixelFormat::kBgr24 || image->width_px != board_.camera.width_px ||
         image->height_px != board_.camera.height_px || image->format != on.format)
-      return check;
+      return false;
   }
-  const LumaView bright(on);
-  const Registration registration = register_board(board_, parameters_.registration, bright, board_.X_BC, false);
-  if (!registration.good) {
-    check.verdict = SwitchVerdict::kNotRegistered;
-    return check;
-  }
-  // In the dark image there may be too little light to see the board; where it is seen, it is in the same place.
+  return true;
+}
+
+// In the dark image there may be too little light to see the board; where it is seen, it is in the same place.
+bool SwitchChecker::has_moved(const Registration& registration, const ImageView& off) const {
   const Registration before = register_board(board_, parameters_.registration, LumaView(off), registration.X_BC, true);
-  if (before.good && before.cones == registration.cones) {
-    const auto step = geometry::step_between(registration.X_BC, before.X_BC);
-    if (step.head<3>().norm() > kMostMoved_m || step.tail<3>().norm() > kMostTurned_rad) {
-      check.verdict = SwitchVerdict::kMoved;
-      return check;
-    }
-  }
+  if (!before.good || before.cones != registration.cones) return false;
+  const auto step = geometry::step_between(registration.X_BC, before.X_BC);
+  return step.head<3>().norm() > kMaxMotion_m || step.tail<3>().norm() > kMaxRotation_rad;
+}
+
+LumaView SwitchChecker::subtract(const ImageView& on, const ImageView& off) {
   const int pixel_bytes = bytes_per_pixel(on.format);
   const int width = on.width_px;
   for (int y = 0; y < on.height_px; ++y) {
@@ -81,8 +77,12 @@ SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, cons
     for (int x = 0; x < width; ++x)
       out[x] = static_cast<std::uint8_t>(std::max(0, int{a[pixel_bytes * x]} - int{b[pixel_bytes * x]}));
   }
-  const LumaView difference(ImageView{difference_.data(), width, on.height_px, width, PixelFormat::kGrey8});
-  const BoardView view(board_.camera, registration.X_BC);
+  return LumaView(ImageView{difference_.data(), width, on.height_px, width, PixelFormat::kGrey8});
+}
+
+// The mean of the difference over the board, grey levels.
+double SwitchChecker::mean_on_board(const LumaView& difference, const geometry::Pose& X_BC) const {
+  const BoardView view(board_.camera, X_BC);
   double sum = 0.0;
   int places = 0;
   for (int i = 0; i < kAlong; ++i) {
@@ -95,38 +95,59 @@ SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, cons
       ++places;
     }
   }
-  check.difference = places > 0 ? sum / places : 0.0;
-  if (check.difference < kLeastDifference) {
+  return places > 0 ? sum / places : 0.0;
+}
+
+// The shadow that is nearest, in standard deviations, to where the lamp throws this probe's.
+void SwitchChecker::compare_shadow(std::size_t probe, const ShadowFinder::Found& found, const Lamp& lamp,
+                                   const geometry::Matrix6d& registration, SwitchCheck& check) const {
+  const Eigen::Vector3d& p_BL = lamp.p_BL;
+  const auto model = shadow_of(p_BL, board_.probe[probe].p_BA);
+  // The turn of the board moves the lamp in its frame.
+  Eigen::Matrix3d cross;
+  cross << 0, -p_BL.z(), p_BL.y(), p_BL.z(), 0, -p_BL.x(), -p_BL.y(), p_BL.x(), 0;
+  const Eigen::Matrix<double, 2, 3> J_turn = model.J_lamp * cross;
+  for (int k = 0; k < found.count; ++k) {
+    const ProbeShadow& shadow = found.shadow[static_cast<std::size_t>(k)];
+    const Eigen::Matrix2d V = shadow.covariance + shadow.J_pose * registration * shadow.J_pose.transpose() +
+                              board_.place_sigma_m * board_.place_sigma_m * model.J_tip * model.J_tip.transpose() +
+                              board_.turn_sigma_rad * board_.turn_sigma_rad * J_turn * J_turn.transpose() +
+                              lamp.sigma_m * lamp.sigma_m * model.J_lamp * model.J_lamp.transpose();
+    const Eigen::Vector2d off_m = shadow.p_BS - model.p_BS;
+    const double chi2 = off_m.dot(V.inverse() * off_m);
+    if (check.seen[probe] && chi2 >= check.chi2[probe]) continue;
+    check.off_m[probe] = off_m;
+    check.chi2[probe] = chi2;
+    check.seen[probe] = true;
+  }
+}
+
+SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, const Eigen::Vector3d& p_RL,
+                                 double lamp_sigma_m) {
+  SwitchCheck check;
+  if (!can_compare(on, off)) return check;
+  const Registration registration = register_board(board_, parameters_.registration, LumaView(on), board_.X_BC, false);
+  if (!registration.good) {
+    check.verdict = SwitchVerdict::kNotRegistered;
+    return check;
+  }
+  if (has_moved(registration, off)) {
+    check.verdict = SwitchVerdict::kMoved;
+    return check;
+  }
+  const LumaView difference = subtract(on, off);
+  check.difference = mean_on_board(difference, registration.X_BC);
+  if (check.difference < kMinDifference) {
     check.verdict = SwitchVerdict::kNoDifference;
     return check;
   }
-  const Eigen::Vector3d p_BL = board_.X_RB.inverse() * p_RL;
+  const Lamp lamp{.p_BL = board_.X_RB.inverse() * p_RL, .sigma_m = lamp_sigma_m};
   bool any = false;
   bool all_agree = true;
   for (std::size_t i = 0; i < finders_.size(); ++i) {
-    if ((registration.cones & (1 << i)) == 0 || p_BL.z() < board_.probe[i].p_BA.z() + 0.05) continue;
+    if ((registration.cones & (1 << i)) == 0 || lamp.p_BL.z() < board_.probe[i].p_BA.z() + kMinAboveTip_m) continue;
     const auto found = finders_[i].find(difference, registration.X_BC, 256.0);
-    const auto model = shadow_of(p_BL, board_.probe[i].p_BA);
-    // The turn of the board moves the lamp in its frame.
-    Eigen::Matrix3d cross;
-    cross << 0, -p_BL.z(), p_BL.y(), p_BL.z(), 0, -p_BL.x(), -p_BL.y(), p_BL.x(), 0;
-    const Eigen::Matrix<double, 2, 3> J_turn = model.J_lamp * cross;
-    double nearest = -1.0;
-    for (int k = 0; k < found.count; ++k) {
-      const ProbeShadow& shadow = found.shadow[static_cast<std::size_t>(k)];
-      const Eigen::Matrix2d V = shadow.covariance +
-                                shadow.J_pose * registration.covariance * shadow.J_pose.transpose() +
-                                board_.place_sigma_m * board_.place_sigma_m * model.J_tip * model.J_tip.transpose() +
-                                board_.turn_sigma_rad * board_.turn_sigma_rad * J_turn * J_turn.transpose() +
-                                lamp_sigma_m * lamp_sigma_m * model.J_lamp * model.J_lamp.transpose();
-      const Eigen::Vector2d off_m = shadow.p_BS - model.p_BS;
-      const double chi2 = off_m.dot(V.inverse() * off_m);
-      if (nearest >= 0.0 && chi2 >= nearest) continue;
-      nearest = chi2;
-      check.off_m[i] = off_m;
-      check.chi2[i] = chi2;
-      check.seen[i] = true;
-    }
+    compare_shadow(i, found, lamp, registration.covariance, check);
     if (!check.seen[i]) continue;
     any = true;
     all_agree = all_agree && check.chi2[i] < kBound;

@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "pipeline/illumination/lamp.h"
+#include "pipeline/illumination/luma_view.h"
 #include "pipeline/illumination/probe_observation.h"
+#include "pipeline/illumination/registration.h"
+#include "pipeline/illumination/shadow_lines.h"
 
 namespace cgsr::illumination {
 
@@ -46,6 +49,18 @@ class SwitchChecker {
   SwitchCheck check(const ImageView& on, const ImageView& off, const Eigen::Vector3d& p_RL, double lamp_sigma_m);
 
  private:
+  struct Lamp {
+    Eigen::Vector3d p_BL;
+    double sigma_m;
+  };
+
+  [[nodiscard]] bool can_compare(const ImageView& on, const ImageView& off) const;
+  [[nodiscard]] bool has_moved(const Registration& registration, const ImageView& off) const;
+  LumaView subtract(const ImageView& on, const ImageView& off);
+  [[nodiscard]] double mean_on_board(const LumaView& difference, const geometry::Pose& X_BC) const;
+  void compare_shadow(std::size_t probe, const ShadowFinder::Found& found, const Lamp& lamp,
+                      const geometry::Matrix6d& registration, SwitchCheck& check) const;
+
   Board board_;
   ProbesParameters parameters_;
   std::vector<ShadowFinder> finders_;
