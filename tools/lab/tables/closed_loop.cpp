@@ -38,10 +38,10 @@ constexpr std::array kDemands{
 
 Result<nlohmann::json> run_once(const std::string& robot, std::uint64_t seed) {
   const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  const auto json = scratch_json();
+  const auto summary_file = scratch_json();
   return run_for_json({program.string(), "run", "--config", robot, "--seed", std::to_string(seed), "--log-level",
-                       "warning", "--json", json.string()},
-                      json);
+                       "warning", "--json", summary_file.string()},
+                      summary_file);
 }
 
 /// What did not happen in a run (a loss, say) has no value in it.
