@@ -9,9 +9,10 @@
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/stages/shade_stage.h"
 #include "pipeline/world/index.h"
 #include "pipeline/world/load.h"
+#include "platform/work_budget.h"
 #include "src/commands/command.h"
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
@@ -29,8 +30,8 @@ struct Options {
   std::vector<double> lamp;
   std::string output;
   std::string image;
-  int widen = 0;
-  render::ShadeParameters shade;
+  double lamp_sigma_m = 0.0;
+  stages::ShadeStageParameters shade;
 };
 
 /// Darkens what lies in shade and tints blue what may: the masks as the robot has them, cell by cell.
@@ -52,15 +53,39 @@ double share(const std::vector<std::uint8_t>& mask) {
   return 100.0 * (1.0 - static_cast<double>(lit) / static_cast<double>(mask.size()));
 }
 
+/// The lamp as the command line gives it.
+Result<illumination::KnownLamp> lamp_of(const Options& options) {
+  illumination::KnownLamp lamp;
+  lamp.p_WL = {options.lamp[0], options.lamp[1], options.lamp[2]};
+  if (!lamp.p_WL.allFinite()) return fail("--lamp: three finite numbers are expected, in metres");
+  lamp.covariance = options.lamp_sigma_m * options.lamp_sigma_m * Eigen::Matrix3d::Identity();
+  return lamp;
+}
+
+/// The masks as a robot at rest gets them: the stage's first turn prepares the lamp's place, the next one renders.
+Result<stages::ShadowMasks> masks_of(const Options& options, std::shared_ptr<const world::Map> map,
+                                     const geometry::Camera& camera, const geometry::Pose& X_WC) {
+  const auto lamp = lamp_of(options);
+  if (!lamp) return tl::unexpected(lamp.error());
+  stages::ShadeStage stage(std::move(map), camera, options.shade);
+  UnlimitedBudget budget;
+  const geometry::Matrix6d exact = geometry::Matrix6d::Zero();
+  stage.update(budget, X_WC, exact, &*lamp);
+  auto masks = stage.update(budget, X_WC, exact, &*lamp);
+  if (!masks || !masks->masks) {
+    return fail(fmt::format("no masks: {}", to_string(masks ? masks->status : stages::ShadeStatus::kPreparing)));
+  }
+  return std::move(*masks);
+}
+
 int run_shade(const Options& options) {
-  const auto map = world::load_map(options.map);
-  if (!map) return report(map.error());
+  auto loaded = world::load_map(options.map);
+  if (!loaded) return report(loaded.error());
+  const auto map = std::make_shared<const world::Map>(std::move(*loaded));
   const auto camera = read_camera(options.camera);
   if (!camera) return report(camera.error());
   const auto X_WC = read_pose(options.pose);
   if (!X_WC) return report(X_WC.error());
-  const Eigen::Vector3d p_WL(options.lamp[0], options.lamp[1], options.lamp[2]);
-  if (!p_WL.allFinite()) return report(Error{"--lamp: three finite numbers are expected, in metres"});
 
   cv::Mat picture;
   if (options.image.empty()) {
@@ -70,12 +95,13 @@ int run_shade(const Options& options) {
     if (!image) return report(image.error());
     picture = std::move(*image);
   }
-  render::ShadowVolumes volumes(*map, options.shade);
-  const render::ShadeMasks& masks = volumes.look(*X_WC, *camera, p_WL, options.widen);
+  const auto shade = masks_of(options, map, *camera, *X_WC);
+  if (!shade) return report(shade.error());
+  const render::ShadeMasks& masks = *shade->masks;
   draw_masks(masks, picture);
   if (const auto written = write_picture(options.output, picture); !written) return report(written.error());
-  fmt::print("{}: {:.1f} % of the surfaces seen lie in shade, {:.1f} % of the image may; {} silhouette edges\n",
-             options.output, share(masks.surface_shaded), share(masks.possibly_shaded), volumes.silhouettes());
+  fmt::print("{}: {:.1f} % of the surfaces seen lie in shade, {:.1f} % of the image may\n", options.output,
+             share(masks.surface_shaded), share(masks.possibly_shaded));
   return kSuccess;
 }
 
@@ -93,14 +119,22 @@ void add_shade_command(CLI::App& app, int& exit_code) {
       ->expected(3);
   command->add_option("--output", options->output, "the picture")->required();
   command->add_option("--image", options->image, "drawn over this instead of the map's surfaces");
-  command->add_option("--width", options->shade.width, "columns of the masks")
+  command->add_option("--width", options->shade.masks.width, "columns of the masks")
       ->check(in_range(16, 1024))
       ->capture_default_str();
-  command->add_option("--height", options->shade.height, "rows of the masks")
+  command->add_option("--height", options->shade.masks.height, "rows of the masks")
       ->check(in_range(16, 1024))
       ->capture_default_str();
-  command->add_option("--widen", options->widen, "cells by which the masks grow")
-      ->check(in_range(0, 100))
+  command
+      ->add_option("--lamp-sigma", options->lamp_sigma_m,
+                   "standard deviation of each coordinate of the lamp, in metres: the mask of what may lie in shade "
+                   "widens with it")
+      ->check(in_range(0.0, 10.0))
+      ->capture_default_str();
+  command
+      ->add_option("--sigmas", options->shade.masks.sigmas,
+                   "standard deviations of lamp and map by which that mask is widened; 0: not at all")
+      ->check(in_range(0.0, 10.0))
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run_shade(*options); });
 }
