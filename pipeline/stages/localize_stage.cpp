@@ -24,27 +24,36 @@ bool LocalizeStage::takes(const ImageView& image) const {
          (image.width_px == working_.width_px && image.height_px == working_.height_px);
 }
 
-void LocalizeStage::carry(const hal::Odometry& odometry) {
+void LocalizeStage::carry_on(const hal::Odometry& odometry) {
   const geometry::Pose X_OR = pose_of(odometry, axle_height_m_);
-  if (X_OR_) tracker_.moved(X_OR_->inverse() * X_OR);
+  if (X_OR_) carry(X_OR_->inverse() * X_OR);
   X_OR_ = X_OR;
-  tracker_.pitched(odometry.pitch_rad, axle_height_m_);
+  lean(odometry.pitch_rad, axle_height_m_);
 }
 
 PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image, const runtime::Aged<View>& view,
                                    const std::optional<hal::Odometry>& odometry) {
-  PoseEstimate pose;
   const View* const now = view.within(Duration::zero());
-  if (now == nullptr || !now->reduced) return pose;
-  if (odometry) carry(*odometry);
+  if (now == nullptr || !now->reduced) return {};
+  if (odometry) carry_on(*odometry);
   const ImageView grey = now->grey();
+  return update(budget, takes(grey) ? grey : image);
+}
+
+PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image) {
+  PoseEstimate pose;
   pose.has_map = true;
-  pose.camera = tracker_.see(takes(grey) ? grey : image, budget, self_mask_.empty() ? nullptr : self_mask_.data());
+  pose.camera = tracker_.see(image, budget, mask());
   const geometry::Pose X_WR = pose.camera.X_WC * X_CR_;
   const bool known = pose.camera.state == localization::TrackState::kTracking ||
                      pose.camera.state == localization::TrackState::kRecovered;
   pose.robot = {known, X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR)};
   return pose;
+}
+
+localization::Correction LocalizeStage::correct(WorkBudget& budget, const ImageView& image,
+                                                const localization::Prior& prior) {
+  return localizer_.correct(image, prior, budget, mask());
 }
 
 }  // namespace cgsr::stages

@@ -75,9 +75,24 @@ class LocalizeStage {
   Output update(WorkBudget& budget, const ImageView& image, const runtime::Aged<View>& view,
                 const std::optional<hal::Odometry>& odometry);
 
+  /// The same for an owner without odometry of hal's: with the image itself, at the pose that carry() and lean() led to. While a search is under
+  /// way the same image may be handed over again.
+  Output update(WorkBudget& budget, const ImageView& image);
+  /// The robot moved by X_R0R1 since the last image.
+  void carry(const geometry::Pose& X_R0R1) { tracker_.moved(X_R0R1); }
+  /// The robot's pitch in the coming image, positive nose down, about an axle that high; carry() contains it.
+  void lean(double pitch_rad, double axle_height_m) { tracker_.pitched(pitch_rad, axle_height_m); }
+
+  /// Corrects this prior of the camera instead of the pose that is carried on, which stays as it is. A search goes on with the next call, until
+  /// restart(). \return what became of it; kSearching: there is no answer yet.
+  localization::Correction correct(WorkBudget& budget, const ImageView& image, const localization::Prior& prior);
+  void restart() { localizer_.restart(); }
+  [[nodiscard]] bool searching() const { return localizer_.searching(); }
+
  private:
   [[nodiscard]] bool takes(const ImageView& image) const;
-  void carry(const hal::Odometry& odometry);
+  void carry_on(const hal::Odometry& odometry);
+  [[nodiscard]] const std::uint8_t* mask() const { return self_mask_.empty() ? nullptr : self_mask_.data(); }
 
   std::shared_ptr<const world::Map> map_;
   geometry::Pose X_CR_;

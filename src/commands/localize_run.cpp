@@ -52,12 +52,10 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   if (auto opened = run.open_images(options); !opened) return tl::unexpected(opened.error());
   auto map = world::load_map(options.map);
   if (!map) return tl::unexpected(map.error());
-  state.map = std::move(*map);
-  if (state.map.edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
-  auto expectation = make_expectation(state.map, state.config.localizer);
-  if (!expectation) return tl::unexpected(expectation.error());
-  state.localizer.emplace(state.map, state.camera, state.config.localizer, std::move(*expectation));
+  state.map = std::make_shared<const world::Map>(std::move(*map));
+  if (state.map->edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
   if (auto opened = run.open_poses(options); !opened) return tl::unexpected(opened.error());
+  if (auto opened = run.open_stage(); !opened) return tl::unexpected(opened.error());
   if (auto opened = run.open_outputs(options); !opened) return tl::unexpected(opened.error());
   return run;
 }
@@ -105,8 +103,23 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
   }
   X_RC_ = X_RC;
-  state_->tracker.emplace(*state_->localizer, X_RC, state_->config.tracker);
-  state_->tracker->start(localization::prior_at(*start, start_sigmas(state_->config.prior)));
+  start_ = localization::prior_at(*start, start_sigmas(state_->config.prior));
+  return {};
+}
+
+Result<void> LocalizeRun::open_stage() {
+  State& state = *state_;
+  auto expectation = make_expectation(*state.map, state.config.localizer);
+  if (!expectation) return tl::unexpected(expectation.error());
+  stages::LocalizationSetup setup;
+  setup.map = state.map;
+  setup.expectation = std::move(*expectation);
+  setup.camera = state.camera;
+  setup.X_RC = X_RC_;
+  setup.localizer = state.config.localizer;
+  setup.tracking = state.config.tracker;
+  setup.start = start_;
+  state.stage.emplace(std::move(setup));
   return {};
 }
 
@@ -120,8 +133,8 @@ Result<void> LocalizeRun::open_outputs(const LocalizeOptions& options) {
     }
   }
   if (!options.video.empty()) {
-    state_->expectation = std::make_unique<render::DepthRaster>(state_->map, render::RasterParameters{});
-    state_->overlay.emplace(state_->map, *state_->expectation, state_->camera);
+    state_->expectation = std::make_unique<render::DepthRaster>(*state_->map, render::RasterParameters{});
+    state_->overlay.emplace(*state_->map, *state_->expectation, state_->camera);
     auto video = VideoWriter::create(options.video, state_->overlay->picture_size(),
                                      1.0 / to_seconds(input_->mode().frame_period));
     if (!video) return tl::unexpected(video.error());
@@ -142,59 +155,62 @@ Result<const PoseRow*> LocalizeRun::row_for(const std::vector<PoseRow>& rows, co
 }
 
 localization::Correction LocalizeRun::follow(const ImageView& image, std::uint32_t units) {
-  localization::PoseTracker& tracker = *state_->tracker;
+  stages::LocalizeStage& stage = *state_->stage;
   auto budget = runtime::StageBudget::of_units(units);
   // What the first image costs is not counted: its prior is wide.
   const bool counted = images_ > 0;
   if (counted) count_stage_begin();
   for (int look = 0; look < kMostLooks; ++look) {
-    tracker.see(image, budget);
-    if (!state_->localizer->searching() || budget.refused()) break;
+    tracked_ = stage.update(budget, image).camera;
+    if (!stage.searching() || budget.refused()) break;
   }
   if (counted) units_most_ = std::max(units_most_, budget.granted());
   if (counted) {
-    count_stage_end("localize");
+    count_stage_end(stages::LocalizeStage::kName.data());
     count_image_end();
   }
-  return tracker.now().correction;
+  return tracked_.correction;
 }
 
 Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
-  if (state_->tracker) {
-    geometry::Pose X_R0R1 = geometry::Pose::Identity();
-    if (!odometry_.empty()) {
-      const auto row = row_for(odometry_, odometry_file_);
-      if (!row) return tl::unexpected(row.error());
-      if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
-      X_OR_before_ = (*row)->X;
-      // About the floor instead of an axle of unknown height: a millimetre of the camera's height.
-      state_->tracker->pitched(geometry::pitch_of((*row)->X), 0.0);
-    }
-    // No robot waits for the first one: it is looked at until it says where the camera is.
-    if (images_ == 0) return follow(image, runtime::StageBudget::kAll);
-    const geometry::Pose X_WC_before = state_->tracker->now().X_WC;
-    const bool corrected_before = state_->tracker->now().correction.corrected;
-    state_->tracker->moved(odometry_.empty() ? X_RR_last_ : X_R0R1);
-    const localization::Correction answer = follow(image, units_);
-    // Without odometry: as it moved last, so it moves on; what ends a loss is no movement.
-    if (odometry_.empty())
-      X_RR_last_ = answer.corrected && corrected_before
-                       ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
-                       : geometry::Pose::Identity();
-    return answer;
+  if (!priors_.empty()) return look_at_prior(image);
+  stages::LocalizeStage& stage = *state_->stage;
+  geometry::Pose X_R0R1 = geometry::Pose::Identity();
+  if (!odometry_.empty()) {
+    const auto row = row_for(odometry_, odometry_file_);
+    if (!row) return tl::unexpected(row.error());
+    if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
+    X_OR_before_ = (*row)->X;
+    // About the floor instead of an axle of unknown height: a millimetre of the camera's height.
+    stage.lean(geometry::pitch_of((*row)->X), 0.0);
   }
+  // No robot waits for the first one: it is looked at until it says where the camera is.
+  if (images_ == 0) return follow(image, runtime::StageBudget::kAll);
+  const geometry::Pose X_WC_before = tracked_.X_WC;
+  const bool corrected_before = tracked_.correction.corrected;
+  stage.carry(odometry_.empty() ? X_RR_last_ : X_R0R1);
+  const localization::Correction answer = follow(image, units_);
+  // Without odometry: as it moved last, so it moves on; what ends a loss is no movement.
+  if (odometry_.empty())
+    X_RR_last_ = answer.corrected && corrected_before ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
+                                                      : geometry::Pose::Identity();
+  return answer;
+}
+
+Result<localization::Correction> LocalizeRun::look_at_prior(const ImageView& image) {
   const auto row = row_for(priors_, priors_file_);
   if (!row) return tl::unexpected(row.error());
   const auto prior = localization::prior_at((*row)->X, state_->config.prior.sigmas());
+  stages::LocalizeStage& stage = *state_->stage;
   UnlimitedBudget budget;
   localization::Correction answer;
-  state_->localizer->restart();
+  stage.restart();
   count_stage_begin();
   for (int look = 0; look < kMostLooks; ++look) {
-    answer = state_->localizer->correct(image, prior, budget);
-    if (!state_->localizer->searching()) break;
+    answer = stage.correct(budget, image, prior);
+    if (!stage.searching()) break;
   }
-  count_stage_end("localize");
+  count_stage_end(stages::LocalizeStage::kName.data());
   count_image_end();
   return answer;
 }

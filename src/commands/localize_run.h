@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "pipeline/geometry/camera.h"
-#include "pipeline/localization/localizer.h"
-#include "pipeline/localization/pose_tracker.h"
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/runtime/stage_budget.h"
+#include "pipeline/stages/localize_stage.h"
 #include "pipeline/world/map.h"
 #include "platform/error.h"
 #include "src/config/localization.h"
@@ -58,16 +57,15 @@ class LocalizeRun {
   /// Units of work that the image which took most of them was granted, the first one of a followed camera aside.
   [[nodiscard]] std::uint32_t max_units() const { return units_most_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
-  [[nodiscard]] const world::Map& map() const { return state_->map; }
+  [[nodiscard]] const world::Map& map() const { return *state_->map; }
 
  private:
   /// What must stay where it is while others point to it.
   struct State {
     config::Localization config;
-    world::Map map;
+    std::shared_ptr<const world::Map> map;
     geometry::Camera camera;
-    std::optional<localization::Localizer> localizer;
-    std::optional<localization::PoseTracker> tracker;  ///< following; none: a prior for each image.
+    std::optional<stages::LocalizeStage> stage;
     std::unique_ptr<render::DepthRaster> expectation;  ///< of the video.
     std::optional<MapOverlay> overlay;
   };
@@ -75,21 +73,25 @@ class LocalizeRun {
   LocalizeRun() : state_(std::make_unique<State>()) {}
 
   [[nodiscard]] Result<void> open_images(const LocalizeOptions& options);
+  [[nodiscard]] Result<void> open_stage();
   [[nodiscard]] Result<void> open_poses(const LocalizeOptions& options);
   [[nodiscard]] Result<void> open_outputs(const LocalizeOptions& options);
   [[nodiscard]] Result<localization::Correction> look(const ImageView& image);
+  [[nodiscard]] Result<localization::Correction> look_at_prior(const ImageView& image);
   [[nodiscard]] localization::Correction follow(const ImageView& image, std::uint32_t units);
   [[nodiscard]] Result<void> write(const ImageView& image, const localization::Correction& answer);
   [[nodiscard]] Result<const PoseRow*> row_for(const std::vector<PoseRow>& rows, const std::string& file) const;
 
   std::unique_ptr<State> state_;
   std::optional<ImageInput> input_;
-  std::vector<PoseRow> priors_;
+  std::vector<PoseRow> priors_;  ///< empty: it follows from start_.
   std::string priors_file_;
   std::vector<PoseRow> odometry_;
   std::string odometry_file_;
   std::optional<geometry::Pose> X_OR_before_;
   geometry::Pose X_RC_ = geometry::Pose::Identity();
+  localization::Prior start_;
+  localization::TrackedPose tracked_;  ///< of the last image.
   geometry::Pose X_RR_last_ =
       geometry::Pose::Identity();  ///< how the robot moved over the last image, where nothing says it.
   std::optional<TextFile> csv_;
