@@ -1,8 +1,12 @@
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -18,11 +22,21 @@
 namespace cgsr::app {
 namespace {
 
+/// A list of images for a person, who needs no more than the first of many.
+std::string listed(const std::vector<std::uint64_t>& images) {
+  constexpr std::size_t kMostListed = 12;
+  const auto shown = static_cast<std::ptrdiff_t>(std::min(images.size(), kMostListed));
+  const std::string more = images.size() > kMostListed ? fmt::format(" and {} more", images.size() - kMostListed) : "";
+  return fmt::format("{}{}", fmt::join(images.begin(), images.begin() + shown, ", "), more);
+}
+
 Result<void> write_json(const TrackOptions& options, const TrackRun& run, const std::optional<Score>& score) {
   if (options.json.empty()) return {};
   nlohmann::ordered_json json;
   json["images"] = run.images();
   json["found"] = run.found();
+  json["losses"] = run.losses();
+  json["reacquisitions"] = run.reacquisitions();
   json["config_sha256"] = config::hash(run.config());
   if (score) {
     json["truth"] = {{"images", score->images},
@@ -38,6 +52,8 @@ Result<void> write_json(const TrackOptions& options, const TrackRun& run, const 
 
 void print_summary(const TrackOptions& options, const TrackRun& run, const std::optional<Score>& score, bool stopped) {
   fmt::print("{} images{}, object found in {}\n", run.images(), stopped ? " until it was stopped" : "", run.found());
+  if (!run.losses().empty()) fmt::print("  lost at image {}\n", listed(run.losses()));
+  if (!run.reacquisitions().empty()) fmt::print("  found again at image {}\n", listed(run.reacquisitions()));
   if (score) {
     fmt::print("against {} ({} images with the object after the learned one)\n", options.truth, score->images);
     fmt::print("  precision {:.3f}   recall {:.3f}   IoU {:.3f}   IoU > 0.5 in {:.3f}   found when absent {}\n",

@@ -40,6 +40,7 @@ Result<void> TrackRun::track(const ImageLease& image) {
 
 Result<void> TrackRun::miss() {
   ++asked_;
+  note_change(false);
   return write_row({});
 }
 
@@ -58,7 +59,14 @@ std::optional<Score> TrackRun::score(std::uint64_t first_answer) const {
                     static_cast<int>(first_answer));
 }
 
+void TrackRun::note_change(bool found) {
+  if (seen_ && found != found_last_) (found ? reacquisitions_ : losses_).push_back(frame_);
+  seen_ = seen_ || found;
+  found_last_ = found;
+}
+
 Result<void> TrackRun::keep(const ImageLease& image, const color::TrackedObject& object) {
+  note_change(object.found);
   const auto light = object.found ? std::optional(object.light) : std::nullopt;
   const auto plurality = history_.add(image.stamp(), light);
   if (session_.video) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/track/light_history.h"
@@ -31,6 +32,9 @@ class TrackRun {
 
   [[nodiscard]] int images() const { return asked_; }
   [[nodiscard]] int found() const { return found_; }
+  /// The images from which on the object was not found, and those in which it was found again.
+  [[nodiscard]] const std::vector<std::uint64_t>& losses() const { return losses_; }
+  [[nodiscard]] const std::vector<std::uint64_t>& reacquisitions() const { return reacquisitions_; }
   [[nodiscard]] std::uint64_t frame() const { return frame_; }
   [[nodiscard]] const config::Color& config() const { return session_.config; }
   [[nodiscard]] ImageInput& input() { return *session_.input; }
@@ -45,6 +49,7 @@ class TrackRun {
   Result<void> keep(const ImageLease& image, const color::TrackedObject& object);
   Result<void> draw(const ImageLease& image, const color::TrackedObject& object,
                     const std::optional<color::Light>& light);
+  void note_change(bool found);
   Result<void> write_row(const color::TrackedObject& object);
 
   Session session_;
@@ -55,6 +60,10 @@ class TrackRun {
   std::uint64_t frame_;
   int asked_ = 0;
   int found_ = 0;
+  bool seen_ = false;        ///< it was found in an image before,
+  bool found_last_ = false;  ///< and in the last one.
+  std::vector<std::uint64_t> losses_;
+  std::vector<std::uint64_t> reacquisitions_;
 };
 
 }  // namespace cgsr::app

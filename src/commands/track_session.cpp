@@ -1,5 +1,6 @@
 #include "src/commands/track_session.h"
 
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -75,14 +76,23 @@ Result<Begun> learn_or_load(const TrackOptions& options, Session& session) {
     if (!model) return tl::unexpected(model.error());
     return Begun{std::move(*model), std::nullopt, {}, fmt::format("model {}", options.model)};
   }
-  const auto box = parse_box(options.learn);
-  if (!box) return tl::unexpected(box.error());
+  const auto asked = parse_box(options.learn);
+  if (!asked) return tl::unexpected(asked.error());
   auto next = session.input->next();
   if (!next.image) return fail(fmt::format("{}: no image {}: {}", options.input, options.learn_frame, next.problem));
-  const color::Sample sample{next.image.view(), *box};
+  const ImageView image = next.image.view();
+  const color::Sample sample{image, *asked};
   auto learned = color::learn({&sample, 1}, session.config.learn);
   if (!learned) return tl::unexpected(learned.error());
-  return Begun{std::move(learned->model), std::move(next.image), *box, learned->message};
+  const Box box =
+      intersection(*asked, {0.0, 0.0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)});
+  std::string message = learned->message;
+  if (box != *asked) {
+    message +=
+        fmt::format("\nnote: the box {} reaches beyond the image of {}x{} pixels; {:g},{:g},{:g},{:g} of it is tracked",
+                    options.learn, image.width_px, image.height_px, box.x, box.y, box.width, box.height);
+  }
+  return Begun{std::move(learned->model), std::move(next.image), box, std::move(message)};
 }
 
 }  // namespace cgsr::app

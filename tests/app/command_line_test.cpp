@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -96,12 +97,49 @@ TEST(CommandLine, TrackWritesTheColumnsOfTheDesignAndFindsTheObject) {
 
   const auto json = nlohmann::json::parse(read_text(scratch / "t.json"));
   EXPECT_EQ(json["images"], 19);
+  EXPECT_TRUE(json["losses"].empty());
+  EXPECT_TRUE(json["reacquisitions"].empty());
   EXPECT_EQ(json["truth"]["images"], 19);
   EXPECT_GT(json["truth"]["iou"].get<double>(), 0.7);
   EXPECT_EQ(json["config_sha256"].get<std::string>().size(), 64u);
 
   cv::VideoCapture video(scratch / "t.avi");
   EXPECT_EQ(static_cast<int>(video.get(cv::CAP_PROP_FRAME_COUNT)), 20);
+}
+
+TEST(CommandLine, TrackNamesTheImagesOfLossAndReacquisition) {
+  const ScratchFolder scratch;
+  const auto region = make_images(scratch / "images", 40);
+  for (int i = 15; i < 28; ++i) {  // the object is gone
+    const auto path = scratch / fmt::format("images/{:04}.png", i);
+    ASSERT_TRUE(std::filesystem::exists(path)) << path;
+    cv::Mat image = cv::imread(path);
+    image.setTo(cv::Scalar(90, 110, 100));
+    cv::imwrite(path, image);
+  }
+  const auto tracked =
+      run_cgsr({"track", "--input", scratch / "images", "--learn", region, "--json", scratch / "t.json"});
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.errors;
+  const auto json = nlohmann::json::parse(read_text(scratch / "t.json"));
+  ASSERT_EQ(json["losses"].size(), 1u);
+  ASSERT_EQ(json["reacquisitions"].size(), 1u);
+  EXPECT_NEAR(json["losses"][0].get<int>(), 17, 4);
+  EXPECT_NEAR(json["reacquisitions"][0].get<int>(), 28, 4);
+  EXPECT_THAT(tracked.output, HasSubstr(fmt::format("lost at image {}", json["losses"][0].get<int>())));
+  EXPECT_THAT(tracked.output, HasSubstr(fmt::format("found again at image {}", json["reacquisitions"][0].get<int>())));
+}
+
+TEST(CommandLine, ABoxThatIsPartlyOutsideIsCutOrRefused) {
+  const ScratchFolder scratch;
+  make_images(scratch / "images", 3);
+  const auto cut =
+      run_cgsr({"track", "--input", scratch / "images", "--learn=-10,80,110,80", "--csv", scratch / "t.csv"});
+  ASSERT_EQ(cut.exit_code, 0) << cut.errors;
+  EXPECT_THAT(cut.errors, AllOf(HasSubstr("the box -10,80,110,80 reaches beyond the image"), HasSubstr("0,80,100,80")));
+  EXPECT_THAT(lines_of(read_text(scratch / "t.csv"))[1], StartsWith("0,1,0.00,80.00,100.00,80.00,"));
+  const auto refused = run_cgsr({"track", "--input", scratch / "images", "--learn=-60,80,100,80"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, HasSubstr("more than half of the box -60,80,100,80 lies outside the image"));
 }
 
 TEST(CommandLine, TrackLearnsFromALaterImage) {

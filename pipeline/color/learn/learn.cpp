@@ -41,9 +41,11 @@ Result<imaging::ReducedImage> coded_image(const Sample& sample, std::size_t inde
   const bool finite =
       std::isfinite(box.x) && std::isfinite(box.y) && std::isfinite(box.width) && std::isfinite(box.height);
   const Box whole_image{0, 0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
-  if (!finite || box.empty() || intersection(box, whole_image).area() < 0.5 * box.area()) {
-    return fail(fmt::format("sample {}: the box {},{},{},{} lies outside the image of {}x{} pixels", index, box.x,
-                            box.y, box.width, box.height, image.width_px, image.height_px));
+  const double inside = finite && !box.empty() ? intersection(box, whole_image).area() / box.area() : 0.0;
+  if (inside < 0.5) {
+    return fail(fmt::format("sample {}: {}the box {},{},{},{} lies outside the image of {}x{} pixels", index,
+                            inside > 0.0 ? "more than half of " : "", box.x, box.y, box.width, box.height,
+                            image.width_px, image.height_px));
   }
   const PixelRect rect = grown(box, 0.0, reduced);
   if (std::min(rect.width(), rect.height()) < kSmallestSide) {
