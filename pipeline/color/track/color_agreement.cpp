@@ -36,6 +36,11 @@ void ColorAmounts::count(std::uint8_t y, std::uint8_t u, std::uint8_t v) {
   }
 }
 
+void ColorAmounts::blend(const ColorAmounts& other, double rate) {
+  const auto share = static_cast<float>(rate);
+  for (std::size_t i = 0; i < shares_.size(); ++i) shares_[i] += share * (other.shares_[i] - shares_[i]);
+}
+
 double ColorAmounts::agreement(const ColorAmounts& other) const {
   float sum = 0.0F;
   for (std::size_t i = 0; i < shares_.size(); ++i) sum += std::sqrt(shares_[i] * other.shares_[i]);

@@ -14,6 +14,9 @@ class ColorAmounts {
   ColorAmounts() = default;
   explicit ColorAmounts(const ObjectView& view);
 
+  /// Becomes more like `other`. \param rate  its share.
+  void blend(const ColorAmounts& other, double rate);
+
   /// \return the Bhattacharyya coefficient of the two (Bhattacharyya 1943): 0, nothing in common, to 1, the same colours in the same amounts.
   [[nodiscard]] double agreement(const ColorAmounts& other) const;
 

@@ -6,10 +6,6 @@
 namespace cgsr::color {
 namespace {
 
-std::uint8_t byte_of(double value) {
-  return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0));
-}
-
 /// The pixels whose centres lie within a length.
 struct PixelSpan {
   int first;
@@ -20,18 +16,6 @@ struct PixelSpan {
 };
 
 }  // namespace
-
-void relight(ColorPatch& patch, const Light& gain) {
-  for (std::size_t i = 0; i < patch.y.size(); ++i) {
-    const auto recorded = imaging::rgb_of_yuv(patch.y[i], patch.u[i], patch.v[i]);
-    const auto changed = lit(recorded, gain);
-    const auto yuv =
-        imaging::yuv_of_rgb({std::min(1.0, changed.r), std::min(1.0, changed.g), std::min(1.0, changed.b)});
-    patch.y[i] = byte_of(yuv.y);
-    patch.u[i] = byte_of(yuv.u);
-    patch.v[i] = byte_of(yuv.v);
-  }
-}
 
 ColorLikelihood::ColorLikelihood()
     : object_(kBins), surroundings_(kBins), likelihood_(kBins, 0.5F), counted_in_(kBins), counted_out_(kBins) {}

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/color/learn/light.h"
+#include "pipeline/color/track/relight.h"
 #include "pipeline/imaging/pyramid.h"
 #include "platform/box.h"
 
@@ -18,8 +19,10 @@ struct ColorPatch {
   explicit ColorPatch(imaging::PatchSize s) : size(s), y(s.area()), u(s.area()), v(s.area()) {}
 };
 
-/// Multiplies R, G and B of every pixel by `gain` (the diagonal model from one light to another, Eq. 3.1).
-void relight(ColorPatch& patch, const Light& gain);
+/// relight() of all its pixels.
+inline void relight(ColorPatch& patch, const Light& gain) {
+  relight(patch.y, patch.u, patch.v, gain);
+}
 
 /// How likely a pixel belongs to the object, by its colour: the share of the object among object and surroundings in its histogram bin
 /// (Bayes with equal priors, Possegger et al. 2015; positives and negatives as in section 6.2.2). 8 x 32 x 32 bins of Y, U, V.

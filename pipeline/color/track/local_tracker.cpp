@@ -15,10 +15,6 @@ using imaging::RealGrid;
 
 constexpr int kShapeCell_px = 2;
 constexpr double kLeastInner = 0.3;  // of the box's side, however thin the box is
-// What follow_light believes: brighter or darker than that is a cut in the film or a covered lens, not a lamp.
-constexpr double kMostGain = 2.0;
-constexpr double kLeastGain = 0.4;
-
 /// A plane of 64x64 bytes as a channel of 32x32 cells: 2x2 means, without the mean of all, in units of 128 / gain grey levels.
 void to_channel(std::span<const std::uint8_t> bytes, float gain, RealGrid& channel) {
   constexpr std::size_t kRow = 2 * kGrid;
@@ -38,10 +34,6 @@ void to_channel(std::span<const std::uint8_t> bytes, float gain, RealGrid& chann
     channel[i] = (static_cast<float>(sums[i]) - mean) * gain / (4.0F * 128.0F);
 }
 
-Light rgb_of(const imaging::Pyramid::Mean& mean) {
-  return imaging::rgb_of_yuv(mean.y, mean.u, mean.v);
-}
-
 }  // namespace
 
 LocalTracker::LocalTracker(const LocalParameters& parameters)
@@ -49,9 +41,6 @@ LocalTracker::LocalTracker(const LocalParameters& parameters)
       shape_(parameters.correlation),
       scale_(parameters.scale),
       patch_({kPatch_px, kPatch_px}),
-      learned_({kPatch_px, kPatch_px}),
-      remembered_({kPatch_px, kPatch_px}),
-      relit_({kPatch_px, kPatch_px}),
       integral_(static_cast<std::size_t>(kPatch_px + 1) * (kPatch_px + 1)) {}
 
 Box LocalTracker::region_of(const Box& box) const {
@@ -86,26 +75,27 @@ LocalTracker::Displacement LocalTracker::displacement(const Box& box, const Box&
           (box.y + 0.5 * box.height - taken.y - 0.5 * taken.height) * kGrid / region.height};
 }
 
-/// Whether the patch at hand shows `box` nearly in its middle and in its size, so that no other needs to be taken.
-bool LocalTracker::patch_shows(const imaging::Pyramid& image, const Box& box) const {
+/// Whether the patch at hand shows `box` nearly in its middle, in its size and under this light, so that no other needs to be taken.
+bool LocalTracker::patch_shows(const imaging::Pyramid& image, const Box& box, const Light& light) const {
   constexpr double kMostCells = 2.0;    // the window still weighs more than 0.9 there
   constexpr double kMostGrowth = 0.02;  // less than a step of the scales
+  constexpr double kMostGain = 0.02;
   if (taken_build_ != image.builds()) return false;
   const Displacement moved = displacement(box, taken_);
+  const Light change = without_light(light, taken_light_);
   return std::max(std::abs(moved.x), std::abs(moved.y)) <= kMostCells &&
-         std::abs(box.width / taken_.width - 1.0) <= kMostGrowth;
+         std::abs(box.width / taken_.width - 1.0) <= kMostGrowth &&
+         std::max({std::abs(change.r - 1.0), std::abs(change.g - 1.0), std::abs(change.b - 1.0)}) <= kMostGain;
 }
 
-void LocalTracker::take_patch(const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, patch_);
-  taken_ = box;
-  taken_build_ = image.builds();
-}
-
-void LocalTracker::take_colors(const imaging::Pyramid& image, const Box& box, ColorPatch& patch) const {
+void LocalTracker::take_patch(const imaging::Pyramid& image, const Box& box, const Light& light) {
   const Box region = region_of(box);
-  image.sample_luma(region, patch.size, patch.y);
-  image.sample_chroma(region, patch.size, patch.u, patch.v);
+  image.sample_luma(region, patch_.size, patch_.y);
+  image.sample_chroma(region, patch_.size, patch_.u, patch_.v);
+  relight(patch_, inverse(light));
+  taken_ = box;
+  taken_light_ = light;
+  taken_build_ = image.builds();
 }
 
 void LocalTracker::take_features(const ColorPatch& patch) {
@@ -123,21 +113,20 @@ void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
   const double around = 0.5 * (box.width + box.height) * parameters_.padding;
   reach_x_ = (box.width + around) / box.width;
   reach_y_ = (box.height + around) / box.height;
-  take_colors(image, box, learned_);
-  take_features(learned_);
+  take_patch(image, box, {1.0, 1.0, 1.0});
+  take_features(patch_);
   shape_.begin(features_, std::sqrt(kGrid / reach_x_ * kGrid / reach_y_));
   scale_.begin(image, box);
-  colors_.learn(learned_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
+  colors_.learn(patch_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
   learned_colors_ = colors_;
-  remember(image, box);
 }
 
-void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
-  if (patch_shows(image, box)) {
+void LocalTracker::learn(const imaging::Pyramid& image, const Box& box, const Light& light) {
+  if (patch_shows(image, box, light)) {
     const Displacement moved = displacement(box, taken_);
     shape_.learn_last(moved.x, moved.y);
   } else {
-    take_patch(image, box);
+    take_patch(image, box, light);
     take_features(patch_);
     shape_.learn(features_);
   }
@@ -146,44 +135,35 @@ void LocalTracker::learn(const imaging::Pyramid& image, const Box& box) {
   scale_.learn(image, box);
 }
 
-void LocalTracker::forget() {
-  shape_.forget();
-  scale_.forget();
-  colors_ = learned_colors_;
-}
-
-LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box) {
-  take_patch(image, box);
-  return answer_from_patch(colors_, box);
-}
-
-LocalAnswer LocalTracker::look_under(const Light& gain, const imaging::Pyramid& image, const Box& box) {
-  take_colors(image, box, patch_);
-  relight(patch_, without_light({1.0, 1.0, 1.0}, gain));
-  taken_build_ = 0;  // what lies there now is not what the image shows
-  return answer_from_patch(learned_colors_, box);
-}
-
-void LocalTracker::believe_light(const Light& gain) {
-  relit_ = learned_;
-  relight(relit_, gain);
-  colors_.learn(relit_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
-}
-
-LocalAnswer LocalTracker::answer_from_patch(const ColorLikelihood& colors, const Box& box) {
+LocalAnswer LocalTracker::look(const imaging::Pyramid& image, const Box& box, const Light& light, Colors colors) {
+  take_patch(image, box, light);
   take_features(patch_);
   RealGrid shape;
   shape_.respond(features_, shape);
+  RealGrid color;
+  score_colors(colors == Colors::kFirst ? learned_colors_ : colors_, color);
+  const auto color_share = static_cast<float>(parameters_.color_share);
   RealGrid merged;
-  score_colors(colors, merged);
-  const auto color = static_cast<float>(parameters_.color_share);
-  for (std::size_t i = 0; i < kGridArea; ++i) merged[i] = (1.0F - color) * shape[i] + color * merged[i];
+  for (std::size_t i = 0; i < kGridArea; ++i) merged[i] = (1.0F - color_share) * shape[i] + color_share * color[i];
 
   const Peak peak = peak_of(merged);
-  LocalAnswer answer{box, peak.value, peak_of(shape).sharpness};
+  LocalAnswer answer;
+  answer.box = box;
+  answer.score = peak.value;
+  answer.sharpness = peak_of(shape).sharpness;
   answer.box.x += (peak.x - 0.5 * kGrid) * box.width * reach_x_ / kGrid;
   answer.box.y += (peak.y - 0.5 * kGrid) * box.height * reach_y_ / kGrid;
+  measure_colors(color[static_cast<std::size_t>(std::lround(peak.y) * kGrid + std::lround(peak.x))], answer);
   return answer;
+}
+
+/// How well the colours tell the object from what is around it. \param score  of score_colors where the object is.
+void LocalTracker::measure_colors(double score, LocalAnswer& answer) const {
+  const double all = integral_.back();
+  const double inside = score * kPatch_px / reach_x_ * kPatch_px / reach_y_;
+  const double around_px = kPatch_px * kPatch_px * (1.0 - 1.0 / (reach_x_ * reach_y_));
+  answer.color_inside = score;
+  answer.color_around = std::max(0.0, all - inside) / around_px;
 }
 
 /// The mean likelihood of the box's pixels, for every cell its centre may move to.
@@ -221,30 +201,6 @@ void LocalTracker::score_colors(const ColorLikelihood& colors, RealGrid& score) 
       score[j * kGrid + i] = (bottom[right] - bottom[left] - top[right] + top[left]) * inverse_area;
     }
   }
-}
-
-void LocalTracker::remember(const imaging::Pyramid& image, const Box& box) {
-  if (!patch_shows(image, box)) take_patch(image, box);
-  remembered_ = patch_;
-  remembered_taken_ = taken_;
-  remembered_box_ = box;
-  remembered_mean_ = image.mean();
-}
-
-void LocalTracker::follow_light(const imaging::Pyramid& image) {
-  const Light before = rgb_of(remembered_mean_);
-  const Light now = rgb_of(image.mean());
-  constexpr double kDark = 1.0 / 255.0;
-  const Light gain{(now.r + kDark) / (before.r + kDark), (now.g + kDark) / (before.g + kDark),
-                   (now.b + kDark) / (before.b + kDark)};
-  const double largest = std::max({gain.r, gain.g, gain.b});
-  const double least = std::min({gain.r, gain.g, gain.b});
-  if (std::max(std::log(largest), -std::log(least)) <= parameters_.min_light_step) return;
-  if (largest > kMostGain || least < kLeastGain) return;
-  relit_ = remembered_;
-  relight(relit_, gain);
-  colors_.learn(relit_, object_in_patch(parameters_.inner_margin, remembered_box_, remembered_taken_),
-                object_in_patch(0.0, remembered_box_, remembered_taken_), parameters_.light_rate);
 }
 
 }  // namespace cgsr::color

@@ -1,6 +1,6 @@
 #include "pipeline/color/track/object_view.h"
 
-#include <algorithm>
+#include "pipeline/color/track/relight.h"
 
 namespace cgsr::color {
 
@@ -14,16 +14,17 @@ ObjectView view_object(const imaging::Pyramid& image, const Box& box) {
   return view;
 }
 
+ObjectView view_image(const imaging::Pyramid& image) {
+  const Box whole{0.0, 0.0, static_cast<double>(image.width_px()), static_cast<double>(image.height_px())};
+  ObjectView view;
+  image.sample_luma(whole, ObjectView::kSize, view.y);
+  image.sample_chroma(whole, ObjectView::kSize, view.u, view.v);
+  return view;
+}
+
 ObjectView relit(const ObjectView& view, const Light& gain) {
-  const auto byte_of = [](double value) { return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0)); };
-  ObjectView changed;
-  for (std::size_t i = 0; i < view.y.size(); ++i) {
-    const auto rgb = lit(imaging::rgb_of_yuv(view.y[i], view.u[i], view.v[i]), gain);
-    const auto yuv = imaging::yuv_of_rgb({std::min(1.0, rgb.r), std::min(1.0, rgb.g), std::min(1.0, rgb.b)});
-    changed.y[i] = byte_of(yuv.y);
-    changed.u[i] = byte_of(yuv.u);
-    changed.v[i] = byte_of(yuv.v);
-  }
+  ObjectView changed = view;
+  relight(changed.y, changed.u, changed.v, gain);
   return changed;
 }
 

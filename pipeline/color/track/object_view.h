@@ -20,6 +20,9 @@ struct ObjectView {
 /// \param box  in camera pixels; its outer tenth is left out, where the surroundings look in.
 ObjectView view_object(const imaging::Pyramid& image, const Box& box);
 
+/// The whole image in as many pixels.
+ObjectView view_image(const imaging::Pyramid& image);
+
 /// The same as a light that is `gain` times as bright in R, G and B would show it (the diagonal model, Eq. 3.1).
 ObjectView relit(const ObjectView& view, const Light& gain);
 

@@ -28,6 +28,7 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.pyramid.build(image);
   s.local.begin(s.pyramid, box);
   s.keep_colors(view_object(s.pyramid, box));
+  s.light.begin({1.0, 1.0, 1.0}, channel_quantiles(view_image(s.pyramid)), s.learned_quantiles);
   const Place itself = s.look(reduced, box);
   s.first_score = itself.local.score;
   s.first_divergence = s.divergence.of(reduced, box).divergence;
@@ -37,7 +38,8 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.located = true;
   s.images_since_sight = 0;
   s.weak_images = 0;
-  s.max_foreign_images = 0;
+  s.foreign_images = 0;
+  s.images_lost = 0;
 }
 
 TrackedObject Tracker::track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,

@@ -6,6 +6,7 @@
 
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
+#include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/local_tracker.h"
 #include "pipeline/imaging/reduce.h"
 #include "platform/box.h"
@@ -95,6 +96,7 @@ struct TrackParameters {
   double max_size_ratio = 5.0;
   SearchParameters search;
   LocalParameters local;
+  LightFollowerParameters light;
   DoubtParameters doubt;
 
   template <class Self, class Visitor>
@@ -109,6 +111,7 @@ struct TrackParameters {
                  "The largest ratio between a side of the box and the learned one, upwards and downwards.");
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");
+    visit.section("light", self.light, "The light of the object from image to image");
     visit.section("doubt", self.doubt, "The criteria by which the tracker's answer is doubted, lost and found again");
   }
 };

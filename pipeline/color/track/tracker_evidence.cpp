@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pipeline/color/track/relight.h"
 #include "pipeline/color/track/tracker_boxes.h"
 #include "pipeline/color/track/tracker_state.h"
 
@@ -18,15 +19,18 @@ constexpr double kGlanceAgreement = 0.65;
 }  // namespace
 
 Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) {
-  const LocalAnswer local_answer = local.look(pyramid, at);
+  const LocalAnswer local_answer = local.look(pyramid, at, light.gain());
   return {local_answer, divergence.of(reduced, local_answer.box).divergence};
 }
 
 Tint Tracker::State::tint(const Box& at) const {
-  const ObjectView view = view_object(pyramid, at);
-  const Light gain = light_gain(learned_quantiles, channel_quantiles(view));
-  const ColorAmounts seen(relit(view, without_light({1.0, 1.0, 1.0}, gain)));
-  return {gain, learned_amounts.agreement(seen)};
+  Tint tint;
+  tint.view = view_object(pyramid, at);
+  tint.quantiles = channel_quantiles(tint.view);
+  tint.gain = light_gain(learned_quantiles, tint.quantiles);
+  const ColorAmounts seen(relit(tint.view, inverse(tint.gain)));
+  tint.agreement = learned_amounts.agreement(seen);
+  return tint;
 }
 
 bool Tracker::State::is_weak(const Place& place) const {
@@ -71,11 +75,13 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   const DoubtParameters& doubt = parameters.doubt;
   LocalAnswer best;
   Tint seen;
+  const SearchSize size = search_size();
   for (int i = 0; i < matches.count && budget.grant(); ++i) {
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
     const Tint its_tint = tint(window);
     if (its_tint.agreement < kGlanceAgreement * doubt.min_found_agreement) continue;
-    const LocalAnswer its_answer = local.look_under(its_tint.gain, pyramid, centred_on(window, box.width, box.height));
+    const LocalAnswer its_answer = local.look(pyramid, centred_on(window, size.width_px, size.height_px), its_tint.gain,
+                                              LocalTracker::Colors::kFirst);
     if (its_answer.score <= best.score) continue;
     best = its_answer;
     seen = its_tint;
@@ -83,7 +89,7 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   if (best.score < kGlanceScore * doubt.min_found_score * first_score) return false;
   if (best.sharpness < kGlanceSharpness * doubt.min_found_sharpness) return false;
   for (int round = 0; round < kRefinements && budget.grant(); ++round) {
-    best = local.look_under(seen.gain, pyramid, best.box);
+    best = local.look(pyramid, best.box, seen.gain, LocalTracker::Colors::kFirst);
     best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.max_size_ratio);
     seen = tint(best.box);
   }
@@ -91,7 +97,8 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   if (best.sharpness < doubt.min_found_sharpness || best.score < doubt.min_found_score * first_score) return false;
   if (seen.agreement < doubt.min_found_agreement || its_divergence > parameters.max_divergence) return false;
   place = {best, its_divergence};
-  local.believe_light(seen.gain);
+  light.set(seen.gain);
+  light.lose();
   images_since_sight = 0;
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pipeline/color/track/relight.h"
 #include "pipeline/color/track/tracker_boxes.h"
 
 namespace cgsr::color {
@@ -17,7 +18,7 @@ void Tracker::State::learn_from_model() {
   local.begin(patch, sample.window);
   keep_colors(view_object(patch, sample.window));
   learned_light = sample.light;
-  const LocalAnswer itself = local.look(patch, sample.window);
+  const LocalAnswer itself = local.look(patch, sample.window, {1.0, 1.0, 1.0});
   first_score = itself.score;
   mean_score = first_score;
 }
@@ -25,37 +26,35 @@ void Tracker::State::learn_from_model() {
 void Tracker::State::keep_colors(const ObjectView& view) {
   learned_quantiles = channel_quantiles(view);
   learned_amounts = ColorAmounts(view);
+  recent_amounts = learned_amounts;
 }
 
 SearchSize Tracker::State::search_size() const {
   if (parameters.mode == TrackMode::kPlain) return {model.width_px, model.height_px};
-  if (located) return {box.width, box.height};
+  if (located && !lost()) return {box.width, box.height};
+  if (located && images_lost % 2 == 0) return {box.width * lost_scale(), box.height * lost_scale()};
   return {model.width_px * lost_scale(), model.height_px * lost_scale()};
 }
 
 TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
   if (matches.count == 0) return {};
   const Match& best = matches.matches.front();
-  const Light light = model.lights[static_cast<std::size_t>(best.light)];
-  return {true, best.box, best.divergence, light, light};
+  const Light its_light = model.lights[static_cast<std::size_t>(best.light)];
+  return {true, best.box, best.divergence, its_light, its_light};
 }
 
 /// The whole image is searched in any case. Where the object was, the local tracker says how it moved; what it says is doubted by three
 /// measures together, and then it is looked for at the search's best windows, as it looked last and as it was learned: a prior, not a cage.
 TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
                                          WorkBudget& budget) {
+  light.predict(channel_quantiles(view_image(pyramid)));
   Place place;
   bool sure = false;
-  if (!located) {
-    const SearchSize size = search_size();
-    box = centred_on(box, size.width_px, size.height_px);
-  }
   if (located && !lost()) {
-    local.follow_light(pyramid);
     place = look(reduced, box);
     sure = !is_weak(place) || recognise(reduced, matches, budget, place) || find(reduced, matches, budget, place);
     weak_images = sure ? 0 : weak_images + 1;
-    if (lost()) return {};
+    if (lost()) return lose();
   } else {
     sure = (located && (stayed(reduced, place) || recognise(reduced, matches, budget, place))) ||
            find(reduced, matches, budget, place);
@@ -66,40 +65,48 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     located = true;
     images_lost = 0;
     weak_images = 0;
-    max_foreign_images = 0;
+    foreign_images = 0;
   }
 
   Box now = place.local.box;
   if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.max_size_ratio);
   box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
   const Tint seen = tint(box);
-  max_foreign_images = seen.agreement < parameters.doubt.min_agreement ? max_foreign_images + 1 : 0;
-  if (max_foreign_images >= parameters.doubt.max_foreign_images) {
-    start_again();
-    return {};
-  }
-  if (sure) {
-    local.learn(pyramid, box);
-    const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
-    mean_score += rate * (place.local.score - mean_score);
-    mean_divergence += rate * (place.divergence - mean_divergence);
-  }
+  light.update(seen.quantiles, seen.gain, seen.agreement);
+  const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
+  foreign_images = is_foreign(seen, amounts) ? foreign_images + 1 : 0;
+  if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
+  if (sure) learn(place, amounts);
   ++images_since_sight;
-  local.remember(pyramid, box);
-  return answer(seen.gain, place.divergence);
+  return answer(place.divergence);
 }
 
-/// What the local tracker followed was not the object: it forgets what it learned from it.
-void Tracker::State::start_again() {
-  local.forget();
-  located = false;
-  box = centred_on(box, model.width_px, model.height_px);
-  mean_score = first_score;
-  mean_divergence = first_divergence;
+/// The object's colours are missing under every light that it may be in: the one that these colours ask for and the followed one; and
+/// they are not what it has looked like since it was learned either.
+bool Tracker::State::is_foreign(const Tint& seen, const ColorAmounts& amounts) const {
+  return std::max({seen.agreement, learned_amounts.agreement(amounts), recent_amounts.agreement(amounts)}) <
+         parameters.doubt.min_agreement;
 }
 
-TrackedObject Tracker::State::answer(const Light& gain, double divergence_of_box) const {
-  const Light exact = lit(learned_light, gain);
+void Tracker::State::learn(const Place& place, const ColorAmounts& amounts) {
+  local.learn(pyramid, box, light.gain());
+  const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
+  mean_score += rate * (place.local.score - mean_score);
+  mean_divergence += rate * (place.divergence - mean_divergence);
+  recent_amounts.blend(amounts, parameters.doubt.mean_rate);
+}
+
+/// Nothing that was learned is forgotten: it may be found again where it was lost, or elsewhere, by what it looked like last or first.
+TrackedObject Tracker::State::lose() {
+  weak_images = parameters.doubt.max_doubtful_images;
+  foreign_images = 0;
+  images_lost = 0;
+  light.lose();
+  return {};
+}
+
+TrackedObject Tracker::State::answer(double divergence_of_box) const {
+  const Light exact = lit(learned_light, light.gain());
   const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
   return {true, intersection(box, image), divergence_of_box, nearest_of(model, exact), exact};
 }

@@ -6,6 +6,7 @@
 #include "pipeline/color/search/box_divergence.h"
 #include "pipeline/color/track/color_agreement.h"
 #include "pipeline/color/track/light_estimate.h"
+#include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/tracker.h"
 
 namespace cgsr::color {
@@ -18,8 +19,10 @@ struct Place {
 
 /// The colours of a place, against the learned ones.
 struct Tint {
-  Light gain;              ///< of the light, from the learned image's.
-  double agreement = 0.0;  ///< ColorAmounts::agreement with that light taken out.
+  ObjectView view;
+  ChannelQuantiles quantiles;
+  Light gain;              ///< of the light, from the learned image's, by these colours alone.
+  double agreement = 0.0;  ///< ColorAmounts::agreement with the learned ones, that light taken out.
 };
 
 /// Mode plain is Alg. 3.2 alone. The rest is ours: doubt, loss and finding again, of which the dissertation (3.2.2) says nothing.
@@ -29,7 +32,8 @@ struct Tracker::State {
         parameters(p),
         divergence(m, p.search.divergence),
         pyramid(max_width_px, max_height_px),
-        local(p.local) {
+        local(p.local),
+        light(p.light) {
     learn_from_model();
   }
 
@@ -46,20 +50,24 @@ struct Tracker::State {
     return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
   }
   [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.max_doubtful_images; }
-  void start_again();
+  [[nodiscard]] bool is_foreign(const Tint& seen, const ColorAmounts& amounts) const;
+  void learn(const Place& place, const ColorAmounts& amounts);
+  TrackedObject lose();
   [[nodiscard]] bool is_weak(const Place& place) const;
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
   bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
-  [[nodiscard]] TrackedObject answer(const Light& gain, double divergence_of_box) const;
+  [[nodiscard]] TrackedObject answer(double divergence_of_box) const;
 
   ColorModel model;
   TrackParameters parameters;
   BoxDivergence divergence;
   imaging::Pyramid pyramid;
   LocalTracker local;
+  LightFollower light;
   ChannelQuantiles learned_quantiles;
   ColorAmounts learned_amounts;
+  ColorAmounts recent_amounts;  ///< of the last images, with their light taken out.
   Light learned_light;
 
   bool located = false;  ///< `box` is where the object was in the last image.
@@ -67,9 +75,9 @@ struct Tracker::State {
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  int weak_images = 0;         ///< in a row.
-  int images_lost = 0;         ///< in a row.
-  int max_foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
+  int weak_images = 0;     ///< in a row.
+  int images_lost = 0;     ///< in a row.
+  int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
   double first_divergence = 0.0;
 };
