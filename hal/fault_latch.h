@@ -23,6 +23,7 @@ enum class DriveFault : std::uint8_t {
   kBaseFault,        ///< the base reports any other fault of its own: limits, integrity, temperature.
   kLowBattery,       ///< the base warns of an empty battery, or has one.
   kMotorsOff,        ///< disabled, not in the mode that was asked for, or the motors are without power.
+  kYawContradiction,  ///< the reported yaw rate turns against the wheels: its sign is configured wrongly. Until a restart.
 };
 
 /// \return the fault in words, for people.
@@ -38,7 +39,8 @@ constexpr std::string_view text(DriveFault fault) {
                                          "the base shuts itself down",
                                          "the base reports a fault of its own",
                                          "the battery is low",
-                                         "the motors are off"};
+                                         "the motors are off",
+                                         "the yaw rate turns against the wheels: base.rmp.scales.yaw_rate_sign"};
   return kWords[static_cast<std::size_t>(fault)];
 }
 

@@ -95,6 +95,7 @@ void Listener::take_motion(const Motion& motion, MonoTime stamp) {
     if (frames > 1 && frames <= kMostLostSets) counters_.lost_sets += static_cast<unsigned>(frames - 1);
   }
   motion_ = motion;
+  yaw_check_.take(motion, parameters_.scales);
   odometry_.velocity = velocity;
   fresh(MessageId::kMotion, stamp);
 }

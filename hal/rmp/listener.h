@@ -12,6 +12,7 @@
 #include "hal/rmp/messages.h"
 #include "hal/rmp/odometer.h"
 #include "hal/rmp/parameters.h"
+#include "hal/rmp/yaw_check.h"
 
 namespace cgsr::hal::rmp {
 
@@ -67,6 +68,7 @@ class Listener {
   [[nodiscard]] const FeedbackCounters& counters() const { return counters_; }
   [[nodiscard]] const std::optional<MonoTime>& foreign_command_at() const { return foreign_command_at_; }
   [[nodiscard]] const std::optional<MonoTime>& powered_off_at() const { return powered_off_at_; }
+  [[nodiscard]] YawCheck::Verdict yaw_check() const { return yaw_check_.verdict(); }
 
  private:
   void take_motion(const Motion& motion, MonoTime stamp);
@@ -82,6 +84,7 @@ class Listener {
   RmpReport report_;
   FeedbackCounters counters_;
   std::optional<Motion> motion_;
+  YawCheck yaw_check_;
   std::optional<MonoTime> foreign_command_at_;
   std::optional<MonoTime> powered_off_at_;
   std::array<Command, 4> said_{};  // a ring

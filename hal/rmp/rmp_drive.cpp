@@ -135,6 +135,7 @@ DriveFault RmpDrive::standing_fault(MonoTime now) {
   if (stale) return DriveFault::kFeedbackLost;
   if (!listener_.complete()) return DriveFault::kStarting;
   if (const auto fault = reported_fault(listener_.report()); fault != DriveFault::kNone) return fault;
+  if (listener_.yaw_check() == YawCheck::Verdict::kContradicts) return DriveFault::kYawContradiction;
   if (const auto mode = wanted_mode(); mode && *mode != listener_.report().power.mode) return DriveFault::kMotorsOff;
   return listener_.sets_in_a_row() < parameters_.min_ready_sets ? DriveFault::kStarting : DriveFault::kNone;
 }

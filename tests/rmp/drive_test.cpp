@@ -233,13 +233,25 @@ TEST(RmpDrive, AnotherFirmwareTurnsAtAnotherRate) {
   EXPECT_NEAR(rig.odometry.velocity.left_radps, 0.4 * 7.8 / 5.817, 0.01);
 }
 
-TEST(RmpDrive, AWrongSignOfTheYawRateDisagreesWithTheHeading) {
+// The first turn shows it: the robot stops, and stays stopped until somebody corrects the configuration.
+TEST(RmpDrive, AWrongSignOfTheYawRateIsNoticedAgainstTheWheels) {
   Rig::Setup setup;
   setup.base.wire_yaw_rate_clockwise = false;
   Rig rig(setup);
-  (void)rig.run_until(2.0, {.left_radps = 0.4});
-  EXPECT_LT(rig.odometry.velocity.left_radps, -0.3);
-  EXPECT_GT(rig.odometry.heading_rad, 0.3);
+  (void)rig.run_until(1.0, kStand);
+  const auto noticed_s = rig.run_until_fault(hal::DriveFault::kYawContradiction, {.left_radps = 0.4});
+  ASSERT_TRUE(noticed_s);
+  EXPECT_LT(*noticed_s, 1.0);
+  EXPECT_LT(rig.odometry.velocity.left_radps, -0.05);
+  (void)rig.run_until(5.0, kStand);
+  EXPECT_FALSE(rig.drive.rearm(rig.now));
+  EXPECT_EQ(rig.drive.fault(), hal::DriveFault::kYawContradiction);
+}
+
+TEST(RmpDrive, TheRightSignOfTheYawRateIsNoFaultInAnyTurn) {
+  Rig rig;
+  for (int i = 0; i < 8; ++i) (void)rig.run_until(1.0 + i, {.forward_mps = 0.3, .left_radps = i % 2 == 0 ? 0.6 : -0.6});
+  EXPECT_EQ(rig.drive.fault(), hal::DriveFault::kNone);
 }
 
 }  // namespace
