@@ -15,6 +15,7 @@
 namespace cgsr::app {
 namespace {
 
+using calibration::Board;
 using ::testing::HasSubstr;
 using testing::run_cgsr;
 using testing::ScratchFolder;
@@ -24,13 +25,14 @@ const Board kBoard{7, 4, 0.04};
 void write_boards(const std::string& folder, int count) {
   std::mt19937 random(5);
   std::filesystem::create_directories(folder);
-  const geometry::Camera camera = testing::true_camera();
+  const geometry::Camera camera = calibration::testing::true_camera();
   for (int i = 0; i < count;) {
     const double part_x = 0.3 + 0.2 * (i % 3);
     const double part_y = 0.35 + 0.15 * ((i / 3) % 3);
-    const auto X_CB = testing::board_before_camera(random, kBoard, camera, part_x, part_y, 0.45 + 0.02 * i);
-    if (testing::corners_of(X_CB, kBoard, camera).empty()) continue;
-    cv::imwrite(folder + fmt::format("/{:03}.png", i), testing::picture_of(X_CB, kBoard, camera, random));
+    const auto X_CB =
+        calibration::testing::board_before_camera(random, kBoard, camera, part_x, part_y, 0.45 + 0.02 * i);
+    if (calibration::testing::corners_of(X_CB, kBoard, camera).empty()) continue;
+    cv::imwrite(folder + fmt::format("/{:03}.png", i), calibration::testing::picture_of(X_CB, kBoard, camera, random));
     ++i;
   }
 }
@@ -46,8 +48,8 @@ TEST(CalibrateCommand, CameraFromAFolderOfBoards) {
   EXPECT_LT(json["rms_px"].get<double>(), 0.3);
   const auto camera = read_camera(scratch / "camera.yaml");
   ASSERT_TRUE(camera) << camera.error().message;
-  EXPECT_NEAR(camera->fx_px, testing::true_camera().fx_px, 0.01 * 611.0);
-  EXPECT_NEAR(camera->cx_px, testing::true_camera().cx_px, 6.0);
+  EXPECT_NEAR(camera->fx_px, calibration::testing::true_camera().fx_px, 0.01 * 611.0);
+  EXPECT_NEAR(camera->cx_px, calibration::testing::true_camera().cx_px, 6.0);
   EXPECT_EQ(cv::imread(scratch / "corners.png").cols, 640);
 
   const auto wrong = run_cgsr(
@@ -64,10 +66,10 @@ TEST(CalibrateCommand, MountFromABoardOnTheFloor) {
   X_RC.linear() << 0, -0.5, 0.8660254, -1, 0, 0, 0, -0.8660254, -0.5;  // 30 degrees down
   X_RC.translation() = Eigen::Vector3d(0.1, 0.0, 0.6);
   const Board board{7, 4, 0.06};
-  const geometry::Pose X_RB = board_on_floor(1.1, 0.2, -1.5707963);
-  const geometry::Camera camera = testing::true_camera();
-  ASSERT_FALSE(testing::corners_of(X_RC.inverse() * X_RB, board, camera).empty());
-  cv::imwrite(scratch / "board.png", testing::picture_of(X_RC.inverse() * X_RB, board, camera, random));
+  const geometry::Pose X_RB = calibration::board_on_floor(1.1, 0.2, -1.5707963);
+  const geometry::Camera camera = calibration::testing::true_camera();
+  ASSERT_FALSE(calibration::testing::corners_of(X_RC.inverse() * X_RB, board, camera).empty());
+  cv::imwrite(scratch / "board.png", calibration::testing::picture_of(X_RC.inverse() * X_RB, board, camera, random));
   testing::write_text(scratch / "camera.yaml", camera_as_yaml(camera, "camera"));
   const auto run = run_cgsr({"calibrate", "mount", "--input", scratch / "board.png", "--board", "7x4", "--square",
                              "0.06", "--camera", scratch / "camera.yaml", "--board-at", "1.1,0.2,-90", "--output",
@@ -91,7 +93,7 @@ TEST(CalibrateCommand, OdometryFromARound) {
   std::string odometry = "frame,tx,ty,tz,qw,qx,qy,qz\n";
   std::string truth = odometry;
   std::string camera = odometry;
-  Mount mount;
+  calibration::Mount mount;
   mount.X_RC.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
   mount.X_RC.translation() = Eigen::Vector3d(0.2, 0.05, 1.1);
   geometry::Pose X_OR = geometry::Pose::Identity();
@@ -116,7 +118,7 @@ TEST(CalibrateCommand, OdometryFromARound) {
   EXPECT_TRUE(std::filesystem::exists(scratch / "ways.png"));
 
   // The same from the camera's poses, as cgsr localize writes them.
-  testing::write_text(scratch / "robot.toml", mount_as_toml(mount));
+  testing::write_text(scratch / "robot.toml", calibration::mount_as_toml(mount));
   testing::write_text(scratch / "camera.csv", camera);
   const auto seen = run_cgsr({"calibrate", "odometry", "--odometry", scratch / "odometry.csv", "--poses",
                               scratch / "camera.csv", "--mount", scratch / "robot.toml", "--json"});

@@ -13,7 +13,7 @@ constexpr int kDirections = 1440;
 constexpr double kFirst_px = 40.0;  // nearer the rod's own foot is seen
 constexpr double kStep_px = 1.0;
 constexpr double kBeside_px = 55.0;  // how bright the plane is
-constexpr float kDark = 0.65F;       // of that
+constexpr float kDarkShare = 0.65F;  // of that
 constexpr double kLeastLength_px = 60.0;
 constexpr int kMostGap = 3;             // steps that may be bright
 constexpr double kRodHalfAngle = 0.45;  // about the direction of the rod itself
@@ -50,13 +50,13 @@ std::optional<Vector2d> find_rod_shadow(const LumaView& image, const Vector2d& b
     float before = 2.0F;
     for (double length = first; gap <= kMostGap; length += kStep_px) {
       const float share = share_at(image, base_px + length * way, across);
-      if (share < kDark) {
+      if (share < kDarkShare) {
         gap = 0;
         end = length;
       } else {
         // Where it crosses, between the last dark step and this one.
-        if (gap == 0 && before < kDark && share < 1.9F) {
-          end += kStep_px * static_cast<double>((kDark - before) / (share - before));
+        if (gap == 0 && before < kDarkShare && share < 1.9F) {
+          end += kStep_px * static_cast<double>((kDarkShare - before) / (share - before));
         }
         ++gap;
       }
