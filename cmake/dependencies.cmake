@@ -1,6 +1,6 @@
 # Every library comes from Debian 12 (tools/packages.txt); nothing is downloaded by the build.
 
-find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc calib3d imgcodecs videoio video tracking aruco objdetect)
+find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc calib3d imgcodecs videoio video tracking photo aruco objdetect)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)

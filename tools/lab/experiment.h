@@ -13,6 +13,7 @@
 #include "platform/error.h"
 #include "src/config/color.h"
 #include "tools/lab/report.h"
+#include "tools/lab/tracking/options.h"
 
 namespace cgsr::lab {
 
@@ -27,6 +28,7 @@ struct Setting {
   config::Color configuration;
   std::string config_file;  ///< where it came from; empty: it is what ships
   std::function<void(const std::string&)> progress = [](const std::string&) {};
+  TrackingOptions tracking;  ///< of tracking-benchmark alone
 };
 
 /// One table or figure that can be reproduced.
@@ -56,6 +58,7 @@ Result<Report> measure(const Experiment& experiment, Setting setting);
 
 // One file each in tables/.
 Result<Report> real_video(const Setting& setting);
+Result<Report> tracking_benchmark(const Setting& setting);
 Result<Report> light_sweep(const Setting& setting);
 Result<Report> search_cost(const Setting& setting);
 Result<Report> figure_3_3(const Setting& setting);

@@ -1,8 +1,11 @@
 #include "tools/lab/film.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <memory>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,14 +18,27 @@
 namespace cgsr::lab {
 namespace {
 
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 2> kImageFolders{"img", "images"};
+constexpr std::array<std::string_view, 2> kTruthFiles{"groundtruth.txt", "groundtruth_rect.txt"};
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (!entry.path().filename().string().starts_with('.')) files.push_back(entry.path());
   }
   std::ranges::sort(files);
   return files;
+}
+
+/// \return the first of these names that is there; the first name where none is.
+fs::path one_of(const fs::path& folder, std::span<const std::string_view> names) {
+  for (const std::string_view name : names) {
+    if (fs::exists(folder / name)) return folder / name;
+  }
+  return folder / names.front();
 }
 
 Image scaled_image(const Image& image, const cv::Size& size) {
@@ -34,17 +50,19 @@ Image scaled_image(const Image& image, const cv::Size& size) {
 }  // namespace
 
 Result<Film> open_film(const std::filesystem::path& folder, std::optional<cv::Size> size) {
-  const auto files = files_in(folder / "img");
-  if (files.empty()) return fail(fmt::format("there are no images in {}", (folder / "img").string()));
-  auto truth = read_truth(folder / "groundtruth.txt");
+  const fs::path images = one_of(folder, kImageFolders);
+  const fs::path truth_file = one_of(folder, kTruthFiles);
+  const auto files = files_in(images);
+  if (files.empty()) return fail(fmt::format("there are no images in {}", images.string()));
+  auto truth = read_truth(truth_file);
   if (!truth) return tl::unexpected(truth.error());
-  if (auto checked = app::check_length(folder / "groundtruth.txt", *truth, files.size()); !checked) {
+  if (auto checked = app::check_length(truth_file, *truth, files.size()); !checked) {
     return tl::unexpected(checked.error());
   }
   truth->resize(files.size());
   if (!truth->front()) {
     return fail(fmt::format("{}: the object is not visible in the first image, so there is nothing to learn from",
-                            (folder / "groundtruth.txt").string()));
+                            truth_file.string()));
   }
   const auto first = load_image(files.front());
   if (!first) return tl::unexpected(first.error());

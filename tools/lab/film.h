@@ -23,7 +23,8 @@ struct Film {
   [[nodiscard]] int size() const { return static_cast<int>(truth.size()); }
 };
 
-/// Opens FOLDER/img (image files in the order of their names) and FOLDER/groundtruth.txt (read_truth()).
+/// Opens FOLDER/img or FOLDER/images (image files in the order of their names) and FOLDER/groundtruth.txt or FOLDER/groundtruth_rect.txt
+/// (read_truth()).
 ///
 /// \param size  every image, and its truth, is scaled to this size; nothing: as recorded.
 /// \return the film, or what is missing: the images, the truth, or a first image in which the object is visible.

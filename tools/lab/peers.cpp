@@ -32,7 +32,7 @@ struct MarkedStage {
 
 class CamShift final : public BoxTracker {
  public:
-  Result<void> learn(const Image& image, const Box& box) override {
+  Result<LearnedObject> learn(const Image& image, const Box& box) override {
     window_ = pixels_of(box, image.bgr);
     if (window_.empty()) return fail("the box lies outside the image");
     cv::Mat hsv, has_hue, histogram;
@@ -40,7 +40,7 @@ class CamShift final : public BoxTracker {
     cv::inRange(hsv, cv::Scalar(0, kLeastSaturation, kLeastValue), cv::Scalar(180, 256, 256), has_hue);
     cv::calcHist(&hsv, 1, kChannels.data(), has_hue, histogram, 1, kBins.data(), ranges_.data());
     cv::normalize(histogram, histogram_, 0, 255, cv::NORM_MINMAX);
-    return {};
+    return LearnedObject{};
   }
 
   Sighting track(const Image& image) override {
@@ -50,7 +50,7 @@ class CamShift final : public BoxTracker {
     cv::calcBackProject(&hsv, 1, kChannels.data(), histogram_, projection, ranges_.data());
     const auto until = cv::TermCriteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 1);
     cv::CamShift(projection, window_, until);
-    if (window_.area() > 1) return {.box = box_of(window_), .light = {}, .exact_light = {}};
+    if (window_.area() > 1) return {.box = box_of(window_), .light = {}, .exact_light = {}, .confidence = 1.0};
     restart_around_the_loss(projection.size());
     return {};
   }
@@ -80,19 +80,19 @@ class FilterTracker final : public BoxTracker {
   FilterTracker(cv::Ptr<cv::Tracker> tracker, bool first_update_trains)
       : tracker_(std::move(tracker)), first_update_trains_(first_update_trains) {}
 
-  Result<void> learn(const Image& image, const Box& box) override {
+  Result<LearnedObject> learn(const Image& image, const Box& box) override {
     cv::Rect rect = pixels_of(box, image.bgr);
     if (rect.empty()) return fail("the box lies outside the image");
     tracker_->init(image.bgr, rect);
     if (first_update_trains_) tracker_->update(image.bgr, rect);
-    return {};
+    return LearnedObject{};
   }
 
   Sighting track(const Image& image) override {
     const MarkedStage stage;
     cv::Rect rect;
     if (!tracker_->update(image.bgr, rect) || rect.empty()) return {};
-    return {.box = box_of(rect), .light = {}, .exact_light = {}};
+    return {.box = box_of(rect), .light = {}, .exact_light = {}, .confidence = 1.0};
   }
 
  private:

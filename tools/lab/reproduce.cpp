@@ -51,6 +51,7 @@ Result<Setting> setting_of(const ReproduceOptions& options) {
   setting.seed = options.seed ? *options.seed : draw_seed();
   setting.count = !options.no_count;
   setting.trials = options.trials;
+  setting.tracking = options.tracking;
   if (!options.data.empty()) setting.data = options.data;
   if (!options.videos.empty()) setting.videos = options.videos;
   if (isatty(STDERR_FILENO) != 0) {
@@ -165,6 +166,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
       "--check-page", options.check_page,
       "list published tables that are stale; fail when docs/results.md is not what they say; measures nothing");
   app.add_option("--results", options.results, "the folder of published results; none: docs/results of the sources");
+  add_tracking_options(app, options.tracking);
 }
 
 Result<int> reproduce(const ReproduceOptions& options) {

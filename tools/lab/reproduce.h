@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "platform/error.h"
+#include "tools/lab/tracking/options.h"
 
 namespace CLI {
 class App;
@@ -27,6 +28,7 @@ struct ReproduceOptions {
   bool page = false;
   bool check_page = false;
   std::string results;  ///< folder of the store; empty: docs/results of the source tree.
+  TrackingOptions tracking;
 };
 
 void add_reproduce(CLI::App& app, ReproduceOptions& options);

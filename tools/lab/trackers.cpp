@@ -10,11 +10,11 @@ namespace cgsr::lab {
 
 std::span<const NamedTracker> trackers() {
   static constexpr std::array kTrackers{
-      NamedTracker{"ours", [](const config::Color& configuration) { return make_ours(configuration); }},
-      NamedTracker{"plain", [](const config::Color& configuration) { return make_plain(configuration); }},
-      NamedTracker{"CAM-Shift", [](const config::Color&) { return make_cam_shift(); }},
-      NamedTracker{"KCF", [](const config::Color&) { return make_kcf(); }},
-      NamedTracker{"CSRT", [](const config::Color&) { return make_csrt(); }},
+      NamedTracker{"ours", [](const config::Color& configuration) { return make_ours(configuration); }, ""},
+      NamedTracker{"plain", [](const config::Color& configuration) { return make_plain(configuration); }, ""},
+      NamedTracker{"CAM-Shift", [](const config::Color&) { return make_cam_shift(); }, kCamShiftOptions},
+      NamedTracker{"KCF", [](const config::Color&) { return make_kcf(); }, kKcfOptions},
+      NamedTracker{"CSRT", [](const config::Color&) { return make_csrt(); }, kCsrtOptions},
   };
   return kTrackers;
 }

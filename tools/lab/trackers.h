@@ -14,6 +14,7 @@ namespace cgsr::lab {
 struct NamedTracker {
   std::string_view name;
   std::unique_ptr<BoxTracker> (*make)(const config::Color&);
+  std::string_view options;  ///< of a peer, all that its boxes depend on besides the images; empty: ours, which changes
 };
 
 std::span<const NamedTracker> trackers();
