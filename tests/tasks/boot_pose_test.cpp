@@ -57,10 +57,6 @@ cv::Mat photograph(const calibration::Marker& marker, const geometry::Camera& ca
   return picture;
 }
 
-ImageView view_of(const cv::Mat& grey) {
-  return {grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8};
-}
-
 TEST(BootPose, AMarkerOfKnownPlaceSaysWhereTheCameraIs) {
   const geometry::Camera camera;
   const auto marker = marker_on_the_wall();
@@ -81,7 +77,8 @@ TEST(BootPose, AnotherMarkerOrNoneSaysNothing) {
   const cv::Mat picture = photograph(marker, camera, geometry::pose_on_floor(3.2, 2.2, 0.0) * mount());
   marker.id = 8;
   EXPECT_FALSE(calibration::camera_by_marker(marker, camera, picture));
-  EXPECT_FALSE(calibration::camera_by_marker(marker_on_the_wall(), camera, cv::Mat(480, 640, CV_8UC1, cv::Scalar(255))));
+  EXPECT_FALSE(
+      calibration::camera_by_marker(marker_on_the_wall(), camera, cv::Mat(480, 640, CV_8UC1, cv::Scalar(255))));
 }
 
 TEST(BootPose, WhatTheLastRunLeftComesFirst) {
