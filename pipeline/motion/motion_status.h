@@ -57,10 +57,10 @@ struct MotionInputs {
 /// What a step did, for the log ring and for vision (odometry).
 struct MotionStatus {
   MonoTime stamp{};
-  hal::Odometry odometry;  ///< the newest that the base gave; look at its stamp.
-  hal::Twist goal;         ///< the newest goal as it came, zero when there is none.
+  hal::Odometry odometry;                 ///< the newest that the base gave; look at its stamp.
+  hal::Twist goal;                        ///< the newest goal as it came, zero when there is none.
   MonoTime goal_stamp = MonoTime::min();  ///< of the image that it was decided for; min(): there is none.
-  hal::Twist commanded;    ///< what the base was told, or in a dry run would have been told.
+  hal::Twist commanded;                   ///< what the base was told, or in a dry run would have been told.
   hal::DriveFault drive_fault = hal::DriveFault::kNone;  ///< of a base with a FaultLatch: what it says itself.
   bool sent = false;                                     ///< the base took the command; never true in a dry run.
   bool armed = false;
