@@ -18,7 +18,7 @@ struct SocketCanParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.text("interface", self.interface, "The name of the CAN interface, as `ip link` shows it.");
-    visit.number("bit_rate", self.bit_rate, {0, 1'000'000}, "bit/s",
+    visit.number("bit_rate_bitps", self.bit_rate, {0, 1'000'000}, "bit/s",
                  "The bit rate that the interface must have; 0 accepts any. A virtual interface has none.");
     visit.number("max_restarts", self.max_restarts, {0, 100}, "1",
                  "The number of times within restart_window_s that a controller which is off the bus is restarted; "

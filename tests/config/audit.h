@@ -72,7 +72,8 @@ class Audit {
     struct Suffix {
       std::string_view unit, suffix;
     };
-    static constexpr std::array<Suffix, 24> kSuffixes{{{"m", "_m"},           {"s", "_s"},
+    static constexpr std::array<Suffix, 26> kSuffixes{{{"K", "_k"},           {"bit/s", "_bitps"},
+                                                       {"m", "_m"},           {"s", "_s"},
                                                        {"ms", "_ms"},         {"µs", "_us"},
                                                        {"rad", "_rad"},       {"deg", "_deg"},
                                                        {"px", "_px"},         {"%", "_percent"},

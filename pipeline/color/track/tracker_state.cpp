@@ -76,7 +76,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
   foreign_images = is_foreign(seen, amounts) ? foreign_images + 1 : 0;
   if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
-  if (sure) learn(place, amounts);
+  if (sure && foreign_images == 0) learn(place, amounts);  // what may be another object is not what it looked like
   ++images_since_sight;
   return answer(place.divergence);
 }
