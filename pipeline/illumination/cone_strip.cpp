@@ -177,7 +177,7 @@ bool ConeStrip::guess_tip(Unknowns& x) const {
     x = from;
     x[kTipAlong] = tip.x();
     x[kTipOut] = tip.y();
-    x[kDark] = static_cast<double>(hr / hh);
+    x[kShadowDepth] = static_cast<double>(hr / hh);
   }
   return static_cast<double>(best) > 0.25 * kMinGain;
 }
@@ -217,10 +217,10 @@ bool ConeStrip::is_shown(const Unknowns& x) const {
   int shown = 0;
   for (const auto& [hh, hr] : match) {
     // Where little of it is visible noise decides: three standard deviations of the place's own contrast.
-    if (static_cast<double>(hh) < 20.0 * kMinVariance / (x[kDark] * x[kDark])) continue;
+    if (static_cast<double>(hh) < 20.0 * kMinVariance / (x[kShadowDepth] * x[kShadowDepth])) continue;
     const double contrast = static_cast<double>(hr / hh);
     ++examined;
-    if (contrast > 0.4 * x[kDark] && contrast < 1.7 * x[kDark]) ++shown;
+    if (contrast > 0.4 * x[kShadowDepth] && contrast < 1.7 * x[kShadowDepth]) ++shown;
   }
   return examined >= 3 && shown >= parameters_.min_support * examined;
 }
@@ -257,7 +257,7 @@ std::optional<ConeStrip::Unknowns> ConeStrip::first_guess(const Frame& frame) co
   if (cones < 10 || boards < 10) return std::nullopt;
   Unknowns x = Unknowns::Zero();
   x[kCone] = static_cast<double>(cone) / cones;
-  x[kLevel] = static_cast<double>(board) / boards;
+  x[kBoardLevel] = static_cast<double>(board) / boards;
   x[kTipAlong] = 2.0 * probe_.radius_m;
   return x;
 }
@@ -274,7 +274,7 @@ bool ConeStrip::solve(Fit& fit, const StripModel::Pass& pass) const {
     for (int k = 0; k < StripModel::kUnknowns; ++k) {
       fit.H(k, k) += prior_weight[k];
       const double mean = k == kTipAlong || k == kTipOut ? centre[k] : 0.0;
-      if (k != kCone && k != kLevel && k != kDark) g[k] += prior_weight[k] * (mean - fit.x[k]);
+      if (k != kCone && k != kBoardLevel && k != kShadowDepth) g[k] += prior_weight[k] * (mean - fit.x[k]);
     }
     const Eigen::LLT<StripModel::Normal> solver(fit.H);
     if (solver.info() != Eigen::Success) return false;
@@ -291,7 +291,7 @@ bool ConeStrip::solve(Fit& fit, const StripModel::Pass& pass) const {
 std::optional<double> ConeStrip::gain_of(const Fit& fit) const {
   Fit without;
   without.x = fit.x;
-  without.x[kDark] = 0.0;
+  without.x[kShadowDepth] = 0.0;
   if (!solve(without, kShadowRemoved)) return std::nullopt;
   return (without.sums.squares - fit.sums.squares) / (fit.variance * kCorrelation);
 }
@@ -303,8 +303,8 @@ bool ConeStrip::is_plausible(const Fit& fit) const {
   const double reach = samples().back().place * kStep_m;
   if (tip_along > reach - kMinPlacesBeyond * kStep_m || tip_out < -kMaxIn_m) return false;
   if (tip_out > std::min(kMaxOut_m, std::max(kShort_m, kMaxSlope * tip_along))) return false;
-  const double dark = fit.x[kDark];
-  const double level = fit.x[kLevel];
+  const double dark = fit.x[kShadowDepth];
+  const double level = fit.x[kBoardLevel];
   if (dark < parameters_.min_contrast || dark < parameters_.min_contrast_ratio * level || dark > 0.9 * level)
     return false;
   if (std::sqrt(fit.variance) > std::max(1.8, 0.1 * dark)) return false;
@@ -314,7 +314,7 @@ bool ConeStrip::is_plausible(const Fit& fit) const {
 // The tip's shadow on the board; false when it is not certain enough, or cannot be the shadow of this cone.
 bool ConeStrip::place_shadow(const Fit& fit, const Frame& frame, const BoardView& view, ProbeShadow& shadow) const {
   const StripModel::Normal covariance = fit.H.inverse();
-  if (fit.x[kDark] < 2.5 * std::sqrt(covariance(kDark, kDark))) return false;
+  if (fit.x[kShadowDepth] < 2.5 * std::sqrt(covariance(kShadowDepth, kShadowDepth))) return false;
   Eigen::Matrix2d R;
   R.col(0) = frame.along;
   R.col(1) = frame.outward;
@@ -331,7 +331,7 @@ bool ConeStrip::place_shadow(const Fit& fit, const Frame& frame, const BoardView
   if (!at.in_front) return false;
   shadow.J_pose = -at.J_point.leftCols<2>().inverse() * view.pose_jacobian(at, p_BS);
   shadow.rms = std::sqrt(fit.variance);
-  shadow.contrast = fit.x[kDark];
+  shadow.contrast = fit.x[kShadowDepth];
   shadow.support = 1.0;
   shadow.lines = 2;
   return true;

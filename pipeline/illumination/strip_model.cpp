@@ -27,7 +27,7 @@ StripModel::Shadowless StripModel::without_shadow(const Unknowns& x, const Strip
   const float along = sample.at.x();
   const float out = sample.at.y();
   const float w = step_.at((out - f[kEdge] - f[kEdgeSlope] * along / kEnd_m) / blur_m_).share;
-  const float board = f[kLevel] + f[kSlopeAlong] * along + f[kSlopeOut] * out;
+  const float board = f[kBoardLevel] + f[kSlopeAlong] * along + f[kSlopeOut] * out;
   const float cone = f[kCone] + f[kConeSlope] * along;
   return {.board = w, .missing = cone + (board - cone) * w - sample.value};
 }
@@ -54,7 +54,7 @@ StripModel::Wedge StripModel::wedge_at(const Unknowns& x) const {
   const Outline outline = shadow_outline(tip);
   Wedge wedge;
   wedge.valid = outline.valid;
-  wedge.dark = static_cast<float>(x[kDark]);
+  wedge.dark = static_cast<float>(x[kShadowDepth]);
   for (std::size_t side = 0; side < 2 && wedge.valid; ++side) {
     const Vector2d to_tip = tip - outline.touch[side];
     const double length = to_tip.norm();
@@ -110,12 +110,13 @@ inline void StripModel::linearize(const Floats& f, const SampleLanes& at, const 
   Lane w;
   Lane edge_density;
   step_.at((at.out - f[kEdge] - f[kEdgeSlope] * at.along / kEnd_m) / blur_m_, w, edge_density);
-  const Lane board = f[kLevel] + f[kSlopeAlong] * at.along + f[kSlopeOut] * at.out - f[kDark] * shadow.dark_share;
+  const Lane board =
+      f[kBoardLevel] + f[kSlopeAlong] * at.along + f[kSlopeOut] * at.out - f[kShadowDepth] * shadow.dark_share;
   const Lane cone = f[kCone] + f[kConeSlope] * at.along;
   j[kTipAlong] = w * shadow.J_tip_x;
   j[kTipOut] = w * shadow.J_tip_y;
-  j[kDark] = -w * shadow.dark_share;
-  j[kLevel] = w;
+  j[kShadowDepth] = -w * shadow.dark_share;
+  j[kBoardLevel] = w;
   j[kSlopeAlong] = w * at.along;
   j[kSlopeOut] = w * at.out;
   j[kCone] = 1.0F - w;

@@ -22,16 +22,16 @@ struct StripSample {
 
 /// The numbers that StripModel fits: metres, grey levels, grey levels per metre.
 enum StripUnknown : std::uint8_t {
-  kTipAlong,    ///< the shadow's tip, along the outline.
-  kTipOut,      ///< the same, away from the cone.
-  kDark,        ///< how much darker the board is in the shadow.
-  kLevel,       ///< the board's brightness where the outline leaves the base.
-  kSlopeAlong,  ///< its rise along the outline.
-  kSlopeOut,    ///< its rise away from the cone.
-  kCone,        ///< the cone's brightness.
-  kConeSlope,   ///< its rise along the outline.
-  kEdge,        ///< the outline's place against the registered one.
-  kEdgeSlope,   ///< what is added to that at the outline's far end.
+  kTipAlong,     ///< the shadow's tip, along the outline.
+  kTipOut,       ///< the same, away from the cone.
+  kShadowDepth,  ///< how much darker the board is in the shadow.
+  kBoardLevel,   ///< the board's brightness where the outline leaves the base.
+  kSlopeAlong,   ///< its rise along the outline.
+  kSlopeOut,     ///< its rise away from the cone.
+  kCone,         ///< the cone's brightness.
+  kConeSlope,    ///< its rise along the outline.
+  kEdge,         ///< the outline's place against the registered one.
+  kEdgeSlope,    ///< what is added to that at the outline's far end.
 };
 
 /// The brightness beside the outline of a cone: it goes from the cone's to the board's across a soft edge, and the board is darker by the shadow

@@ -129,7 +129,7 @@ TEST_F(LocalizeFilm, FollowsWithARobotsFileAndThroughOpenGl) {
 
 TEST_F(LocalizeFilm, WithoutOpenGlsLibraryBesideTheProgramItSaysSo) {
   std::filesystem::copy_file(built_cgsr(), file("cgsr"));
-  write_text(file("without.toml"), "[localization.localizer]\nexpectation = \"osmesa\"\n");
+  write_text(file("without.toml"), "[localization]\nlocalizer.expectation = \"osmesa\"\ntracker.floor = false\n");
   const auto run = run_cgsr({"localize", "--map", file("room/map.obj"), "--camera", file("room/calibrated/camera.yaml"),
                              "--input", file("film"), "--pose", file("pose.csv"), "--config", file("without.toml")},
                             file("cgsr"));
