@@ -331,7 +331,7 @@ TEST(Localizer, StrongersMethodWorksWhereNothingIsHidden) {
       moved_m += error_of(prior.X_WC, answer.X_WC).position_m / kTrials;
     }
     EXPECT_GT(moved_m, 0.0005) << static_cast<int>(method)
-                              << ": a method that leaves the prior as it is corrects nothing";
+                               << ": a method that leaves the prior as it is corrects nothing";
     EXPECT_LT(after_m, left * before_m) << static_cast<int>(method) << ": it was " << before_m << " m off before";
   }
 }

@@ -76,7 +76,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
   foreign_images = is_foreign(seen, amounts) ? foreign_images + 1 : 0;
   if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
-  if (sure && foreign_images == 0) learn(place, amounts);  // what may be another object is not what it looked like
+  if (sure) learn(place, amounts);
   ++images_since_sight;
   return answer(place.divergence);
 }
@@ -93,7 +93,8 @@ void Tracker::State::learn(const Place& place, const ColorAmounts& amounts) {
   const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
   mean_score += rate * (place.local.score - mean_score);
   mean_divergence += rate * (place.divergence - mean_divergence);
-  recent_amounts.blend(amounts, parameters.doubt.mean_rate);
+  // What may be another object is not what it looked like.
+  if (foreign_images == 0) recent_amounts.blend(amounts, parameters.doubt.mean_rate);
 }
 
 /// Nothing that was learned is forgotten: it may be found again where it was lost, or elsewhere, by what it looked like last or first.
