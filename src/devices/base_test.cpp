@@ -130,7 +130,7 @@ class BaseTest {
 Result<void> test_base(hal::rmp::RmpDrive& drive, const hal::rmp::RmpParameters& parameters, Clock& clock,
                        const BaseTestOptions& options, const BaseTestObserver& observer) {
   if (auto started = drive.start(); !started) return started;
-  const auto outcome = BaseTest(drive, parameters, clock, options, observer).run();
+  auto outcome = BaseTest(drive, parameters, clock, options, observer).run();
   drive.stop();
   return outcome;
 }

@@ -1,5 +1,6 @@
 // The profile as a terminal shows it: `cgsr profile` after a run, `cgsr top` of a run that goes on.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -65,7 +66,7 @@ std::string histogram_text(const Json& profile) {
   std::string text = "\nframes by length\n";
   for (std::size_t i = 0; i <= last; ++i) {
     const double count = bins[i].is_number() ? bins[i].get<double>() : 0.0;
-    const auto length = static_cast<std::size_t>(50.0 * count / largest + 0.5);
+    const auto length = static_cast<std::size_t>(std::lround(50.0 * count / largest));
     text += fmt::format("{:>6.1f} ms{} |{:<50}| {}\n", period_ms * static_cast<double>(i) / 10.0,
                         i + 1 == bins.size() ? "+" : " ", std::string(length, '#'), count);
   }
