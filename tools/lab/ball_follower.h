@@ -9,13 +9,15 @@
 #include "platform/error.h"
 #include "src/config/color.h"
 #include "tools/lab/image.h"
+#include "tools/lab/shade_trial.h"
 
 namespace cgsr::lab {
 
-/// Chapter 5's tracker as the lab runs it: learns the ball from one box of one image.
-/// \param focal_px  mean of fx and fy.
-Result<color::IntegratedTracker> learned_ball(const Image& image, const Box& box, const config::Color& configuration,
-                                              const color::IntegratedParameters& parameters, double focal_px);
+/// The stage track with a ball that is learned from one box of one image.
+/// \param row  the stage's in the robot's schedule.  \param focal_px  mean of fx and fy.
+Result<BallTracker> learned_ball(const Image& image, const Box& box, const config::Color& configuration,
+                                 const color::IntegratedParameters& parameters, const runtime::StageParameters& row,
+                                 double focal_px);
 
 /// What `cgsr-lab follow-ball` does, the program that is counted: follows the ball through FOLDER/img, learned from its first image and the
 /// first box of FOLDER/groundtruth.txt, with FOLDER/mask.png over every image or without a mask. The tracker's work is marked as the

@@ -2,6 +2,7 @@
 
 #include "platform/config/canonical.h"
 #include "tools/lab/localization/trial.h"
+#include "tools/lab/shade_trial.h"
 #include "tools/lab/source_path.h"
 
 namespace cgsr::lab {
@@ -32,13 +33,27 @@ struct ProbesAndLamp {
 struct Ball {
   config::Color color;
   color::IntegratedParameters integrated;
-  render::ShadeParameters masks;
+  stages::ShadeStageParameters shade;
+  runtime::StageParameters shade_row, track_row;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("color", self.color, "Colour tracking");
     visit.section("integrated", self.integrated, "The ball tracker");
-    visit.section("masks", self.masks, "Shadow masks");
+    visit.section("shade", self.shade, "Shadow masks");
+    visit.section("stage_shade", self.shade_row, "The stage shade in the schedule");
+    visit.section("stage_track", self.track_row, "The stage track in the schedule");
+  }
+};
+
+struct Shade {
+  stages::ShadeStageParameters shade;
+  runtime::StageParameters row;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.section("shade", self.shade, "Shadow masks");
+    visit.section("stage_shade", self.row, "The stage shade in the schedule");
   }
 };
 
@@ -79,13 +94,14 @@ Result<std::string> lamp_hash(const Setting& setting) {
 Result<std::string> shade_hash(const Setting& setting) {
   const auto robot = lamp_robot(setting);
   if (!robot) return tl::unexpected(robot.error());
-  return config::hash(robot->shade.masks);
+  return config::hash(Shade{robot->shade, row_of<stages::ShadeStage>(*robot)});
 }
 
 Result<std::string> ball_hash(const Setting& setting) {
   const auto robot = lamp_robot(setting);
   if (!robot) return tl::unexpected(robot.error());
-  return config::hash(Ball{setting.configuration, robot->integrated, robot->shade.masks});
+  return config::hash(Ball{setting.configuration, robot->integrated, robot->shade, row_of<stages::ShadeStage>(*robot),
+                           row_of<stages::TrackStage>(*robot)});
 }
 
 Result<std::string> lamp_robot_hash(const Setting& setting) {

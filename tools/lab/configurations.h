@@ -18,8 +18,9 @@ std::string robot_file(const Setting& setting, const std::string& name);
 Result<std::string> color_hash(const Setting& setting);         ///< [color]
 Result<std::string> localization_hash(const Setting& setting);  ///< config/localization/floor.toml and free.toml
 Result<std::string> lamp_hash(const Setting& setting);          ///< [probes] and [lamp] of lamp_robot()
-Result<std::string> shade_hash(const Setting& setting);         ///< its [shade.masks]
-Result<std::string> ball_hash(const Setting& setting);  ///< [color] of the command, its [integrated] and [shade.masks]
+Result<std::string> shade_hash(const Setting& setting);         ///< its [shade] and [stage.shade]
+Result<std::string> ball_hash(
+    const Setting& setting);  ///< [color] of the command, its [integrated], [shade], [stage.shade] and [stage.track]
 Result<std::string> lamp_robot_hash(const Setting& setting);   ///< all of lamp_robot()
 Result<std::string> home_robot_hash(const Setting& setting);   ///< all of sim-home
 Result<std::string> round_robot_hash(const Setting& setting);  ///< all of sim-home-round

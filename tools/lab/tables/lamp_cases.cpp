@@ -3,15 +3,19 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "pipeline/illumination/lamp.h"
+#include "pipeline/stages/probes_stage.h"
 #include "tools/lab/configurations.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/probe_room.h"
+#include "tools/lab/probes_trial.h"
 
 namespace cgsr::lab {
 namespace {
@@ -22,7 +26,6 @@ using illumination::LampStatus;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLumens = 600.0;
 constexpr double kHeightSigma_m = 0.02;
-constexpr double kChi2 = 11.345;   // three degrees of freedom, 99 %
 constexpr int kMostDraws = 400;    // for one trial
 constexpr int kLeastOfCurve = 10;  // trials at each value
 
@@ -90,6 +93,31 @@ Standing stand(ProbeRoom& room, const Case& which, double angle_deg, Random& ran
   return {};
 }
 
+/// \param p_RL  where the lamps truly are, robot frame: an answer is judged by the nearest.
+void add(const stages::LampReport& report, const std::vector<Vector3d>& p_RL, Outcome& outcome) {
+  ++outcome.asked;
+  bool answered = false;
+  for (int i = 0; i < report.single_image.count; ++i) {
+    const auto& estimate = report.single_image.lamp[static_cast<std::size_t>(i)];
+    if (estimate.status != LampStatus::kFound) continue;
+    answered = true;
+    const auto nearer = [&](const Vector3d& a, const Vector3d& b) {
+      return (estimate.p_RL - a).norm() < (estimate.p_RL - b).norm();
+    };
+    const LampError off = lamp_error(estimate.p_RL - *std::ranges::min_element(p_RL, nearer), estimate.covariance);
+    ++outcome.images;
+    outcome.error_cm.push_back(off.error_cm);
+    outcome.squares += off.error_cm * off.error_cm;
+    outcome.sigma_cm.push_back(off.sigma_cm);
+    outcome.within_bound += off.within_bound ? 1 : 0;
+  }
+  if (answered) {
+    ++outcome.answered;
+  } else {
+    ++outcome.unanswered[std::string(reason_of(report))];
+  }
+}
+
 Result<void> judge(ProbeRoom& room, const config::Robot& robot, const Case& which, double angle_deg, Random& random,
                    Outcome& outcome) {
   Vector3d p_WL = room.p_WL();
@@ -102,15 +130,11 @@ Result<void> judge(ProbeRoom& room, const config::Robot& robot, const Case& whic
   room.scale_light(which.flicker ? random.uniform(0.4, 1.6) : 1.0);
   room.switch_lamp(0, which.lamp_to_find);
   const auto seed = static_cast<std::uint32_t>(random.next());
-  const RobotCopy copy = RobotCopy::measured(room, seed, robot.probes.board);
-  const auto board = illumination::make_board(copy.board, copy.X_RC, copy.camera);
-  if (!board) return tl::unexpected(board.error());
   illumination::LampParameters lamp = robot.lamp;
   lamp.height_sigma_m = kHeightSigma_m;
   lamp.height_m += kHeightSigma_m * random.normal();
-  illumination::ProbesParameters probes = robot.probes;
-  probes.board = copy.board;
-  illumination::ProbeObserver observer(*board, probes, lamp.height_m - board->X_RB.translation().z());
+  auto stage = measured_probes(room, robot, seed, lamp);
+  if (!stage) return tl::unexpected(stage.error());
   ImageView image = room.shoot(standing.X_WR, seed, 0);
   std::vector<std::uint8_t> darkened;
   if (which.hand) {
@@ -118,32 +142,11 @@ Result<void> judge(ProbeRoom& room, const config::Robot& robot, const Case& whic
     darken(darkened, image.width_px, image.height_px, random);
     image.data = darkened.data();
   }
-  const auto observation = observer.observe(image);
-  const auto lamps = illumination::locate_lamps(*board, lamp, observation);
+  const stages::LampReport report = stage->update(image, nullptr);
   room.switch_lamp(0, true);
-  ++outcome.asked;
-  bool answered = false;
-  for (int i = 0; i < lamps.count; ++i) {
-    const auto& estimate = lamps.lamp[static_cast<std::size_t>(i)];
-    if (estimate.status != LampStatus::kFound) continue;
-    answered = true;
-    Vector3d off = estimate.p_RL - standing.X_WR.inverse() * p_WL;
-    if (which.second_lamp) {
-      const Vector3d other = estimate.p_RL - standing.X_WR.inverse() * room.p_WL(1);
-      if (other.norm() < off.norm()) off = other;
-    }
-    ++outcome.images;
-    outcome.error_cm.push_back(100.0 * off.norm());
-    outcome.squares += 1e4 * off.squaredNorm();
-    outcome.sigma_cm.push_back(100.0 * std::sqrt(estimate.covariance.trace()));
-    if (off.dot(estimate.covariance.inverse() * off) < kChi2) ++outcome.within_bound;
-  }
-  if (answered) {
-    ++outcome.answered;
-  } else {
-    const bool seen = observation.status == illumination::ObservationStatus::kSeen;
-    ++outcome.unanswered[std::string(seen ? to_string(lamps.status) : to_string(observation.status))];
-  }
+  std::vector<Vector3d> p_RL{standing.X_WR.inverse() * p_WL};
+  if (which.second_lamp) p_RL.emplace_back(standing.X_WR.inverse() * room.p_WL(1));
+  add(report, p_RL, outcome);
   return {};
 }
 
@@ -165,76 +168,111 @@ void report_case(const Case& which, const Outcome& outcome, Report& report) {
   report.rows.push_back(plain_row(which.name, "sigma over RMS", "", sigma / rms, outcome.sigma_cm.size()));
 }
 
-}  // namespace
+/// A figure over lamps too weak and too strong, or angles that the table leaves out.
+struct Sweep {
+  const char* title;
+  const char* unit;
+  std::vector<double> values;
+  std::function<double(double)> angle_of;   ///< [deg]
+  std::function<double(double)> factor_of;  ///< of the light
+};
 
-Result<Report> lamp_cases(const Setting& setting) {
+std::array<Sweep, 2> sweeps() {
+  return {Sweep{"A lamp's strength, light at 35 degrees",
+                "lm",
+                {10, 30, 100, 300, 1000, 3000, 10000},
+                [](double) { return 35.0; },
+                [](double lumens) { return lumens / kLumens; }},
+          Sweep{"The light's angle",
+                "deg",
+                {8, 14, 20, 40, 60, 65, 70},
+                [](double angle) { return angle; },
+                [](double) { return 1.0; }}};
+}
+
+/// The rooms, the robot and what draws the trials: each of them has a stream of its own.
+struct Bench {
+  const Setting& setting;
+  config::Robot robot;
+  std::unique_ptr<ProbeRoom> room;
+  std::unique_ptr<ProbeRoom> room_of_two;
+  std::uint64_t streams = 0;
+
+  Random next_random() { return Random(setting.seed).fork(++streams); }
+};
+
+Result<Bench> make_bench(const Setting& setting) {
   const auto robot = lamp_robot(setting);
   if (!robot) return tl::unexpected(robot.error());
   ProbeRoomLight light;
   light.lumens = kLumens;
   auto room = ProbeRoom::make(light);
   if (!room) return tl::unexpected(room.error());
-  ProbeRoomLight two = light;
-  two.second_p_WL = Vector3d(4.2, 2.2, 2.75);
-  auto room_of_two = ProbeRoom::make(two);
+  light.second_p_WL = Vector3d(4.2, 2.2, 2.75);
+  auto room_of_two = ProbeRoom::make(light);
   if (!room_of_two) return tl::unexpected(room_of_two.error());
-  const int all = setting.trials;
-  const int wanted = std::max(1, all / static_cast<int>(kCases.size() + 2));
-  Report report;
-  report.title = fmt::format("lamps that are off, two, behind, flickering or moving, {} trials each", wanted);
-  std::uint64_t label = 0;
-  for (const Case& which : kCases) {
-    Random random = Random(setting.seed).fork(++label);
-    Outcome outcome;
-    for (int trial = 0; trial < wanted; ++trial) {
-      auto& in = which.second_lamp ? **room_of_two : **room;
-      const double angle_deg = random.uniform(which.behind ? 15.0 : 20.0, which.behind ? 50.0 : 60.0);
-      if (auto judged = judge(in, *robot, which, angle_deg, random, outcome); !judged)
-        return tl::unexpected(judged.error());
-      setting.progress(fmt::format("{}: {} of {}", which.name, trial + 1, wanted));
-    }
-    if (which.moves) (*room)->move_lamp(0, (*room)->p_WL());
-    report_case(which, outcome, report);
+  return Bench{setting, *robot, std::move(*room), std::move(*room_of_two)};
+}
+
+Result<void> run_case(Bench& bench, const Case& which, int wanted, Report& report) {
+  Random random = bench.next_random();
+  Outcome outcome;
+  for (int trial = 0; trial < wanted; ++trial) {
+    ProbeRoom& room = which.second_lamp ? *bench.room_of_two : *bench.room;
+    const double angle_deg = random.uniform(which.behind ? 15.0 : 20.0, which.behind ? 50.0 : 60.0);
+    if (auto judged = judge(room, bench.robot, which, angle_deg, random, outcome); !judged) return judged;
+    bench.setting.progress(fmt::format("{}: {} of {}", which.name, trial + 1, wanted));
   }
-  // Curves: lamps too weak and too strong, and angles that the table leaves out.
-  const auto sweep = [&](const std::string& title, const std::string& unit, const std::vector<double>& values,
-                         const std::function<double(double)>& angle_of,
-                         const std::function<double(double)>& factor_of) -> Result<void> {
-    Plot plot{title, unit, "", {{"answered", {}}, {"median error, dm", {}}}};
-    const int each = std::max(kLeastOfCurve, wanted / static_cast<int>(values.size()));
-    for (const double value : values) {
-      Random random = Random(setting.seed).fork(++label);
-      Outcome outcome;
-      for (int trial = 0; trial < each; ++trial) {
-        // judge() sets the light itself: a flicker of exactly this factor.
-        (*room)->set_base_light(factor_of(value));
-        if (auto judged = judge(**room, *robot, kCases[0], angle_of(value), random, outcome); !judged)
-          return tl::unexpected(judged.error());
-        setting.progress(fmt::format("{} {} {}: {} of {}", title, value, unit, trial + 1, each));
-      }
-      (*room)->set_base_light(1.0);
-      if (outcome.asked == 0) continue;
-      plot.curves[0].points.push_back({value, static_cast<double>(outcome.answered) / outcome.asked, {}});
-      const std::string name = fmt::format("{} {}", value, unit);
-      report.rows.push_back(share_row(name, "answered", outcome.answered, outcome.asked));
-      if (outcome.error_cm.empty()) continue;
-      plot.curves[1].points.push_back({value, 0.1 * quantile(outcome.error_cm, 0.5), {}});
-      report.rows.push_back(sampled_row(name, "median error", "cm", outcome.error_cm, Join::kMedian, setting.seed));
+  if (which.moves) bench.room->move_lamp(0, bench.room->p_WL());
+  report_case(which, outcome, report);
+  return {};
+}
+
+Result<void> run_sweep(Bench& bench, const Sweep& sweep, int wanted, Report& report) {
+  Plot plot{sweep.title, sweep.unit, "", {{"answered", {}}, {"median error, dm", {}}}};
+  const int each = std::max(kLeastOfCurve, wanted / static_cast<int>(sweep.values.size()));
+  for (const double value : sweep.values) {
+    Random random = bench.next_random();
+    Outcome outcome;
+    for (int trial = 0; trial < each; ++trial) {
+      // judge() sets the light itself: a flicker of exactly this factor.
+      bench.room->set_base_light(sweep.factor_of(value));
+      const auto judged = judge(*bench.room, bench.robot, kCases[0], sweep.angle_of(value), random, outcome);
+      if (!judged) return judged;
+      bench.setting.progress(fmt::format("{} {} {}: {} of {}", sweep.title, value, sweep.unit, trial + 1, each));
     }
-    report.plots.push_back(std::move(plot));
-    return {};
-  };
-  const auto strengths = sweep(
-      "A lamp's strength, light at 35 degrees", "lm", {10, 30, 100, 300, 1000, 3000, 10000},
-      [](double) { return 35.0; }, [](double lumens) { return lumens / kLumens; });
-  if (!strengths) return tl::unexpected(strengths.error());
-  const auto angles = sweep(
-      "The light's angle", "deg", {8, 14, 20, 40, 60, 65, 70}, [](double angle) { return angle; },
-      [](double) { return 1.0; });
-  if (!angles) return tl::unexpected(angles.error());
+    bench.room->set_base_light(1.0);
+    if (outcome.asked == 0) continue;
+    plot.curves[0].points.push_back({value, static_cast<double>(outcome.answered) / outcome.asked, {}});
+    const std::string name = fmt::format("{} {}", value, sweep.unit);
+    report.rows.push_back(share_row(name, "answered", outcome.answered, outcome.asked));
+    if (outcome.error_cm.empty()) continue;
+    plot.curves[1].points.push_back({value, 0.1 * quantile(outcome.error_cm, 0.5), {}});
+    report.rows.push_back(sampled_row(name, "median error", "cm", outcome.error_cm, Join::kMedian, report.seed));
+  }
+  report.plots.push_back(std::move(plot));
+  return {};
+}
+
+}  // namespace
+
+Result<Report> lamp_cases(const Setting& setting) {
+  auto bench = make_bench(setting);
+  if (!bench) return tl::unexpected(bench.error());
+  const int wanted = std::max(1, setting.trials / static_cast<int>(kCases.size() + 2));
+  Report report;
+  report.seed = setting.seed;
+  report.title = fmt::format("lamps that are off, two, behind, flickering or moving, {} trials each", wanted);
+  for (const Case& which : kCases) {
+    if (auto done = run_case(*bench, which, wanted, report); !done) return tl::unexpected(done.error());
+  }
+  for (const Sweep& sweep : sweeps()) {
+    if (auto done = run_sweep(*bench, sweep, wanted, report); !done) return tl::unexpected(done.error());
+  }
   report.notes.emplace_back(
-      "One image a trial, light from 20 to 60 degrees, standpoints among those from where at least one tip's shadow "
-      "can be seen; the vision's copy is drawn anew in each trial as in table-5.1, the lamp's height with 2 cm.");
+      "The stage probes, without a pose. One image a trial, light from 20 to 60 degrees, standpoints among those from "
+      "where at least one tip's shadow can be seen; the vision's copy is drawn anew in each trial as in table-5.1, the "
+      "lamp's height with 2 cm.");
   report.notes.emplace_back("Two lamps: each answer against the nearer of both.");
   return report;
 }

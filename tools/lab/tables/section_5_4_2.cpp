@@ -9,12 +9,13 @@
 
 #include "hal/sim/render/pixel_rays.h"
 #include "hal/sim/render/truth_images.h"
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/stages/shade_stage.h"
 #include "platform/count_marks.h"
 #include "tools/lab/configurations.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/standpoints.h"
+#include "tools/lab/shade_trial.h"
 #include "tools/lab/shaded_views.h"
 
 namespace cgsr::lab {
@@ -27,22 +28,11 @@ constexpr int kCountedViews = 10;
 constexpr double kBallRadius_m = 0.10;
 constexpr std::size_t kLeastCells = 100;  // possibly shaded, for a view to count
 
-// What the robot does not know, each axis: together about 1.6 cm and 0.17 degrees of pose, 2.5 cm of lamp.
-constexpr double kPlaceSigma_m = 0.010;
-constexpr double kTurnSigma_rad = 0.0018;
-constexpr double kLampSigma_m = 0.016;
+constexpr StatedErrors kStated;
 
 sim::CalibrationErrors map_errors() {
   sim::CalibrationErrors errors = sim::CalibrationErrors::none();
   errors.map_part_m = 0.005;
-  return errors;
-}
-
-render::ShadeErrors known_errors() {
-  render::ShadeErrors errors;
-  errors.lamp = kLampSigma_m * kLampSigma_m * Eigen::Matrix3d::Identity();
-  errors.pose.topLeftCorner<3, 3>() = kPlaceSigma_m * kPlaceSigma_m * Eigen::Matrix3d::Identity();
-  errors.pose.bottomRightCorner<3, 3>() = kTurnSigma_rad * kTurnSigma_rad * Eigen::Matrix3d::Identity();
   return errors;
 }
 
@@ -94,19 +84,18 @@ bool hidden(const sim::Tracer& tracer, const Vector3d& p_W, const Vector3d& p_WL
 /// One world as it is and as a robot has it.
 class Room {
  public:
-  static Result<std::unique_ptr<Room>> make(const std::string& world, const render::ShadeParameters& shipped,
-                                            std::uint64_t seed) {
+  static Result<std::unique_ptr<Room>> make(const std::string& world, const config::Robot& robot, std::uint64_t seed) {
     auto place = Place::make(world);
     if (!place) return tl::unexpected(place.error());
     auto exact = survey(**place, sim::CalibrationErrors::none(), 0);
     if (!exact) return tl::unexpected(exact.error());
     auto told = survey(**place, map_errors(), static_cast<std::uint32_t>(seed));
     if (!told) return tl::unexpected(told.error());
-    auto renderer =
-        sim::Renderer::make((*place)->scene(), (*place)->camera().scaled_to(shipped.width, shipped.height), {});
+    const render::ShadeParameters& masks = robot.shade.masks;
+    auto renderer = sim::Renderer::make((*place)->scene(), (*place)->camera().scaled_to(masks.width, masks.height), {});
     if (!renderer) return tl::unexpected(renderer.error());
     return std::unique_ptr<Room>(
-        new Room(world, shipped, std::move(*place), std::move(*exact), std::move(*told), std::move(*renderer)));
+        new Room(world, robot, std::move(*place), std::move(*exact), std::move(*told), std::move(*renderer)));
   }
 
   /// A view with shade in it, under a lamp anywhere in the room.
@@ -128,21 +117,61 @@ class Room {
     return false;
   }
 
-  void judge(Random& random, Tally& tally) {
+  Result<void> judge(Random& random, Tally& tally) {
+    const auto exact = masks(exact_, not_widened_, X_WC_, p_WL());
+    if (!exact) return tl::unexpected(exact.error());
+    add(*exact->masks, tally);
+    geometry::Vector6d step;
+    step << normal3(kStated.place_sigma_m, random), normal3(kStated.turn_sigma_rad, random);
+    const geometry::Pose X_WC = geometry::moved(X_WC_, step);
+    const Vector3d p_WL_told = p_WL() + normal3(kStated.lamp_sigma_m, random);
+    const auto unwidened = masks(told_, not_widened_, X_WC, p_WL_told);
+    if (!unwidened) return tl::unexpected(unwidened.error());
+    const auto widened = masks(told_, robot_.shade, X_WC, p_WL_told);
+    if (!widened) return tl::unexpected(widened.error());
+    add_estimated(widened->masks->possibly_shaded, unwidened->masks->possibly_shaded, random, tally);
+    return {};
+  }
+
+ private:
+  /// What the stage has of the robot's surroundings.
+  struct Known {
+    geometry::Camera camera;
+    std::shared_ptr<const world::Map> map;
+  };
+
+  Room(const std::string& world, const config::Robot& robot, std::unique_ptr<Place> place, Survey exact, Survey told,
+       std::unique_ptr<sim::Renderer> renderer)
+      : robot_(robot),
+        not_widened_(robot.shade),
+        place_(std::move(place)),
+        exact_{exact.camera, std::make_shared<const world::Map>(std::move(exact.map))},
+        told_{told.camera, std::make_shared<const world::Map>(std::move(told.map))},
+        renderer_(std::move(renderer)),
+        edges_(place_->scene()),
+        area_(area_of(world)),
+        state_(place_->state()) {
+    not_widened_.masks.sigmas = 0.0;
+  }
+
+  /// The masks of a robot that has just got to know this lamp.
+  [[nodiscard]] Result<stages::ShadowMasks> masks(const Known& known, const stages::ShadeStageParameters& parameters,
+                                                  const geometry::Pose& X_WC, const Vector3d& p_WL) {
+    stages::ShadeStage stage(known.map, known.camera, parameters);
+    return masks_of(stage, row_of<stages::ShadeStage>(robot_), X_WC, kStated.pose(), kStated.lamp(p_WL));
+  }
+
+  void add(const render::ShadeMasks& exact, Tally& tally) const {
     ++tally.views;
-    const render::ShadeMasks& exact = exact_volumes_.look(X_WC_, exact_.camera, p_WL());
     Overlap one;
     one.add(exact.surface_shaded, truth_.surface_shaded);
     if (one.either >= static_cast<double>(kLeastCells)) tally.surface_iou.push_back(one.iou());
     tally.surface.add(exact.surface_shaded, truth_.surface_shaded);
     tally.possibly.add(exact.possibly_shaded, truth_.possibly_shaded);
+  }
 
-    geometry::Vector6d step;
-    step << normal3(kPlaceSigma_m, random), normal3(kTurnSigma_rad, random);
-    const geometry::Pose X_WC = geometry::moved(X_WC_, step);
-    const Vector3d p_WL_told = p_WL() + normal3(kLampSigma_m, random);
-    const auto unwidened = told_volumes_.look(X_WC, told_.camera, p_WL_told).possibly_shaded;
-    const auto& widened = told_volumes_.look(X_WC, told_.camera, p_WL_told, known_errors()).possibly_shaded;
+  void add_estimated(const std::vector<std::uint8_t>& widened, const std::vector<std::uint8_t>& unwidened,
+                     Random& random, Tally& tally) const {
     const auto truly = static_cast<double>(count(truth_.possibly_shaded));
     tally.marked += static_cast<double>(count(widened));
     tally.marked_unwidened += static_cast<double>(count(unwidened));
@@ -155,19 +184,6 @@ class Room {
       tally.covered_unwidened += covers(unwidened, *ball) ? 1 : 0;
     }
   }
-
- private:
-  Room(const std::string& world, const render::ShadeParameters& shipped, std::unique_ptr<Place> place, Survey exact,
-       Survey told, std::unique_ptr<sim::Renderer> renderer)
-      : place_(std::move(place)),
-        exact_(std::move(exact)),
-        told_(std::move(told)),
-        renderer_(std::move(renderer)),
-        edges_(place_->scene()),
-        area_(area_of(world)),
-        state_(place_->state()),
-        exact_volumes_(exact_.map, shipped),
-        told_volumes_(told_.map, shipped) {}
 
   [[nodiscard]] Vector3d p_WL() const { return state_.lamps[0].p_WL; }
 
@@ -237,15 +253,15 @@ class Room {
     return false;
   }
 
+  config::Robot robot_;
+  stages::ShadeStageParameters not_widened_;
   std::unique_ptr<Place> place_;
-  Survey exact_;
-  Survey told_;
+  Known exact_;
+  Known told_;
   std::unique_ptr<sim::Renderer> renderer_;
   TrueEdges edges_;
   Area area_;
   sim::SceneState state_;
-  render::ShadowVolumes exact_volumes_;
-  render::ShadowVolumes told_volumes_;
   geometry::Pose X_WC_ = geometry::Pose::Identity();
   sim::ShadowMasks truth_;
 };
@@ -293,6 +309,23 @@ struct Pooled {
   }
 };
 
+Result<void> add_cost(const Setting& setting, Report& report) {
+  setting.progress("counting instructions");
+  const auto counted =
+      count_lab({"shade", "--seed", std::to_string(setting.seed), "--views", std::to_string(kCountedViews)}, "");
+  if (!counted) return tl::unexpected(counted.error());
+  const int turns = counted->images - kCountedViews;
+  for (const auto& [stage, cost] : counted->stages) {
+    const int images = stage == "new_lamp" ? turns : kCountedViews;
+    const std::string row = "home, cost, " + stage;
+    report.rows.push_back(figure(row, "mean", "Minstr", cost.mean_minstr, images));
+    report.rows.push_back(
+        plain_row(row, "worst", "Minstr", cost.worst_minstr, static_cast<std::size_t>(images), Join::kMax));
+  }
+  report.rows.push_back(figure("home, cost, new_lamp", "turns", "", turns, 1));
+  return {};
+}
+
 }  // namespace
 
 Result<void> look_at_shade(std::uint64_t seed, int views) {
@@ -304,18 +337,25 @@ Result<void> look_at_shade(std::uint64_t seed, int views) {
   if (!told) return tl::unexpected(told.error());
   const TrueEdges edges((*place)->scene());
   Random random = Random(seed).fork(0x542);
-  const Vector3d p_WL = (*place)->state().lamps[0].p_WL;
-  render::ShadowVolumes volumes(told->map, robot->shade.masks);
-  const auto look = [&](const geometry::Pose& X_WC, const char* stage) {
+  const illumination::KnownLamp lamp = kStated.lamp((*place)->state().lamps[0].p_WL);
+  stages::ShadeStage stage(std::make_shared<const world::Map>(told->map), told->camera, robot->shade);
+  const auto update = [&](const geometry::Pose& X_WC, const char* mark) {
+    auto budget = budget_of(row_of<stages::ShadeStage>(*robot));
     count_stage_begin();
-    volumes.look(X_WC, told->camera, p_WL, known_errors());
-    count_stage_end(stage);
+    const auto masks = stage.update(budget, X_WC, kStated.pose(), &lamp);
+    count_stage_end(mark);
+    return masks && masks->masks;
   };
   for (int view = 0; view <= views; ++view) {
     const auto stand = draw_standpoint(**place, edges, area_of("home"), {}, random);
     if (!stand) return fail("there is no standpoint in the home");
-    look(stand->X_WC, view == 0 ? "new_lamp" : "new_view");
-    look(stand->X_WC, "nothing_moved");
+    // A new place of the lamp is worked on in the first turns; it gives no masks yet.
+    for (bool masked = view > 0; !masked;) {
+      masked = update(stand->X_WC, "new_lamp");
+      if (!masked) count_image_end();
+    }
+    if (view > 0) update(stand->X_WC, "new_view");
+    update(stand->X_WC, "nothing_moved");
     count_image_end();
   }
   return {};
@@ -331,13 +371,13 @@ Result<Report> section_5_4_2(const Setting& setting) {
   Pooled pooled;
   for (const std::string_view world : kWorlds) {
     const std::string name(world);
-    auto room = Room::make(name, robot->shade.masks, setting.seed);
+    auto room = Room::make(name, *robot, setting.seed);
     if (!room) return tl::unexpected(room.error());
     Random random = Random(setting.seed).fork(0x5420 + name.size());
     Tally tally;
     while (tally.views < trials) {
       if (!(*room)->draw(random)) return fail(fmt::format("{}: no view with shade in it was found", name));
-      (*room)->judge(random, tally);
+      if (auto judged = (*room)->judge(random, tally); !judged) return tl::unexpected(judged.error());
       setting.progress(fmt::format("{}: {} of {}", name, tally.views, trials));
     }
     add_rows(name, tally, setting.seed, report);
@@ -345,17 +385,7 @@ Result<Report> section_5_4_2(const Setting& setting) {
   }
   pooled.add_rows(report);
   if (setting.count) {
-    setting.progress("counting instructions");
-    const auto counted =
-        count_lab({"shade", "--seed", std::to_string(setting.seed), "--views", std::to_string(kCountedViews)}, "");
-    if (!counted) return tl::unexpected(counted.error());
-    for (const auto& [stage, cost] : counted->stages) {
-      const int images = stage == "new_lamp" ? 1 : kCountedViews;
-      const std::string row = "home, cost, " + stage;
-      report.rows.push_back(figure(row, "mean", "Minstr", cost.mean_minstr, images));
-      report.rows.push_back(
-          plain_row(row, "worst", "Minstr", cost.worst_minstr, static_cast<std::size_t>(images), Join::kMax));
-    }
+    if (auto done = add_cost(setting, report); !done) return tl::unexpected(done.error());
   }
   report.notes = {
       "Masks have 160x120 cells. A cell's truth is that of the ray through its middle; a point counts as shaded when "
@@ -367,13 +397,15 @@ Result<Report> section_5_4_2(const Setting& setting) {
       fmt::format("Estimated: the map with its corners off by 0.5 cm, the camera by N(0, {:.1f} cm) and N(0, {:.2f} "
                   "deg), the lamp by N(0, {:.1f} "
                   "cm), each axis; the mask is told these errors, not what they were.",
-                  100.0 * kPlaceSigma_m, kTurnSigma_rad * 57.29578, 100.0 * kLampSigma_m),
+                  100.0 * kStated.place_sigma_m, kStated.turn_sigma_rad * 57.29578, 100.0 * kStated.lamp_sigma_m),
       "A ball of 20 cm hangs anywhere in view where some pixel of it lies in shade, often at a volume's border; "
       "covered: every such pixel is in the "
       "mask.",
       "Pooled: the cells of all views of all worlds together, and all balls; a world by itself may have hardly any "
       "shade.",
-      "new_view: the lamp stays and the camera moved; new_lamp: silhouettes are made anew as well."};
+      "The stage shade with the robot's units; each view is that of a robot that has just got to know its lamp.",
+      "new_view: the lamp stays and the camera moved; new_lamp: a turn that works on a new place of the lamp, or the "
+      "first one with its masks."};
   return report;
 }
 

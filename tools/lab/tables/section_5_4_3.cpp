@@ -20,6 +20,7 @@
 #include "tools/lab/ball_scoring.h"
 #include "tools/lab/configurations.h"
 #include "tools/lab/experiment.h"
+#include "tools/lab/shade_trial.h"
 
 namespace cgsr::lab {
 namespace {
@@ -31,9 +32,9 @@ constexpr int kCurveEvery = 4;  // images: the curve needs fourteen trackers mor
 constexpr double kInShadow = 0.25;
 constexpr double kLit = 0.75;
 
-/// A tracker beside the robot's own.
+/// A tracker beside the robot's own: the same stage with the same units.
 struct Onlooker {
-  color::IntegratedTracker tracker;
+  BallTracker tracker;
   bool with_mask = false;
   BallScore score{};
 };
@@ -51,7 +52,7 @@ class Judge {
                          std::vector<Onlooker>& to) -> Result<void> {
       auto tracker = color::IntegratedTracker::create(*model, parameters, width_px, height_px, focal_px);
       if (!tracker) return tl::unexpected(tracker.error());
-      to.push_back({std::move(*tracker), with_mask});
+      to.push_back({BallTracker(std::move(*tracker), row_of<stages::TrackStage>(robot)), with_mask});
       return {};
     };
     if (auto added = add(robot.integrated, false, without_); !added) return added;
@@ -82,13 +83,12 @@ class Judge {
     was_there_ = was_there_ || truth->there;
     std::optional<Box> said;
     if (object.found) said = object.box;
-    color::ShadeMaskView mask;
-    if (masks != nullptr) mask = {masks->possibly_shaded.data(), masks->width, masks->height, masks->width};
     with_.add(orange, {}, said);
     part_of(*truth).add(orange, {}, said);
+    const stages::ShadowMasks given{stages::ShadeStatus::kMasked, report.picture->masks};
     for (Onlooker& one : without_) watch(one, image, {}, orange);
     if (images_ % kCurveEvery == 0) {
-      for (Onlooker& one : curve_) watch(one, image, one.with_mask ? mask : color::ShadeMaskView{}, orange);
+      for (Onlooker& one : curve_) watch(one, image, one.with_mask ? given : stages::ShadowMasks{}, orange);
     }
     const bool right = orange && said && !intersection(*orange, *said).empty();
     if (right && height_of(*truth) > 0.6) keep("(c) above the table", image, report, 2);
@@ -133,10 +133,10 @@ class Judge {
     Picture best;
   };
 
-  void watch(Onlooker& one, const ImageView& image, const color::ShadeMaskView& mask,
-             const std::optional<Box>& orange) {
-    const color::BallSighting sight = one.tracker.track(image, mask, budget_);
-    one.score.add(orange, {}, sight.found ? std::optional(sight.box) : std::nullopt);
+  static void watch(Onlooker& one, const ImageView& image, const stages::ShadowMasks& masks,
+                    const std::optional<Box>& orange) {
+    const color::BallSighting ball = one.tracker.track(image, masks);
+    one.score.add(orange, {}, ball.found ? std::optional(ball.box) : std::nullopt);
   }
 
   BallScore& part_of(const hal::ImageTruth& truth) {
@@ -166,7 +166,6 @@ class Judge {
 
   config::Pinhole pinhole_;
   app::Overlay overlay_;
-  UnlimitedBudget budget_;
   int images_ = 0;
   bool was_there_ = false;
   BallScore with_;
@@ -191,6 +190,49 @@ void add_score(const std::string& row, const BallScore& score, std::optional<dou
   }
   report.rows.push_back(
       {row, "false", "", std::nullopt, score.false_share(), std::nullopt, score.images + score.absent});
+}
+
+/// What the robot's own statistics say: when each step of its task began, and how far off its lamp was.
+void add_run(const boot::Outputs& outputs, int images, Report& report) {
+  report.rows.push_back({"the run", "images", "", 1821.0, static_cast<double>(images), std::nullopt, 1});
+  for (const sinks::TaskStep& step : outputs.statistics->run().task) {
+    report.rows.push_back(
+        {fmt::format("{}: {}", step.state, step.reason), "begins at", "s", std::nullopt, step.at_s, std::nullopt, 1});
+  }
+  if (outputs.truth == nullptr || outputs.truth->lamp().compared == 0) return;
+  const sinks::LampTruthStatistics& light = outputs.truth->lamp();
+  const std::string row = "lamp's error in the world";
+  report.rows.push_back({row, "at the end", "cm", std::nullopt, 100.0 * light.last_m, std::nullopt, 1});
+  report.rows.push_back(
+      {row, "mean", "cm", std::nullopt, 100.0 * light.mean_m, std::nullopt, static_cast<int>(light.compared)});
+  report.rows.push_back(
+      plain_row(row, "worst", "cm", 100.0 * light.worst_m, static_cast<std::size_t>(light.compared), Join::kMax));
+}
+
+void add_scores(const Judge& judge, Report& report) {
+  add_score("with the mask", judge.with(), kTheirsWith, report);
+  add_score("without a mask", judge.without(), kTheirsWithout, report);
+  for (std::size_t i = 0; i < Judge::kParts.size(); ++i) {
+    add_score(fmt::format("with the mask: {}", Judge::kParts[i]), judge.part(i), std::nullopt, report);
+  }
+  const BallScore& brown = judge.part(Judge::kParts.size() - 1);
+  report.rows.push_back(
+      {"brown ball", "tracked", "images", 0.0, static_cast<double>(brown.found_in_absent), std::nullopt, brown.absent});
+}
+
+void add_curve(const Judge& judge, Report& report) {
+  Plot plot{"False positives against the darkness factor",
+            "factor",
+            "share of images",
+            {{"with the mask", {}}, {"without a mask", {}}}};
+  for (std::size_t i = 0; i < judge.curve().size(); ++i) {
+    const Onlooker& one = judge.curve()[i];
+    plot.curves[one.with_mask ? 0 : 1].points.push_back({kFactors[i / 2], one.score.false_share(), std::nullopt});
+    report.rows.push_back({fmt::format("factor {:.2f}, {}", kFactors[i / 2], one.with_mask ? "with" : "without"),
+                           "false", "", std::nullopt, one.score.false_share(), std::nullopt,
+                           one.score.images + one.score.absent});
+  }
+  report.plots = {std::move(plot)};
 }
 
 }  // namespace
@@ -223,44 +265,11 @@ Result<Report> section_5_4_3(const Setting& setting) {
   StopRequest stop;
   if (auto done = (*robot)->run(stop); !done) return tl::unexpected(done.error());
 
-  const boot::Outputs& outputs = (*robot)->state().outputs;
   Report report;
   report.title = fmt::format("Algorithm 5.2 from exploring to tracking, {} images", images);
-  report.rows.push_back({"the run", "images", "", 1821.0, static_cast<double>(images), std::nullopt, 1});
-  for (const sinks::TaskStep& step : outputs.statistics->run().task) {
-    report.rows.push_back(
-        {fmt::format("{}: {}", step.state, step.reason), "begins at", "s", std::nullopt, step.at_s, std::nullopt, 1});
-  }
-  if (outputs.truth != nullptr && outputs.truth->lamp().compared > 0) {
-    const sinks::LampTruthStatistics& light = outputs.truth->lamp();
-    const auto compared = static_cast<int>(light.compared);
-    report.rows.push_back(
-        {"lamp's error in the world", "at the end", "cm", std::nullopt, 100.0 * light.last_m, std::nullopt, 1});
-    report.rows.push_back(
-        {"lamp's error in the world", "mean", "cm", std::nullopt, 100.0 * light.mean_m, std::nullopt, compared});
-    report.rows.push_back(plain_row("lamp's error in the world", "worst", "cm", 100.0 * light.worst_m,
-                                    static_cast<std::size_t>(light.compared), Join::kMax));
-  }
-  add_score("with the mask", judge.with(), kTheirsWith, report);
-  add_score("without a mask", judge.without(), kTheirsWithout, report);
-  for (std::size_t i = 0; i < Judge::kParts.size(); ++i) {
-    add_score(fmt::format("with the mask: {}", Judge::kParts[i]), judge.part(i), std::nullopt, report);
-  }
-  const BallScore& brown = judge.part(Judge::kParts.size() - 1);
-  report.rows.push_back(
-      {"brown ball", "tracked", "images", 0.0, static_cast<double>(brown.found_in_absent), std::nullopt, brown.absent});
-  Plot plot{"False positives against the darkness factor",
-            "factor",
-            "share of images",
-            {{"with the mask", {}}, {"without a mask", {}}}};
-  for (std::size_t i = 0; i < judge.curve().size(); ++i) {
-    const Onlooker& one = judge.curve()[i];
-    plot.curves[one.with_mask ? 0 : 1].points.push_back({kFactors[i / 2], one.score.false_share(), std::nullopt});
-    report.rows.push_back({fmt::format("factor {:.2f}, {}", kFactors[i / 2], one.with_mask ? "with" : "without"),
-                           "false", "", std::nullopt, one.score.false_share(), std::nullopt,
-                           one.score.images + one.score.absent});
-  }
-  report.plots = {std::move(plot)};
+  add_run((*robot)->state().outputs, images, report);
+  add_scores(judge, report);
+  add_curve(judge, report);
   report.pictures = judge.pictures();
   report.notes = {
       "The robot's own program in the simulated home: it explores, locates the lamp by its probes, backs off, finds "
@@ -269,7 +278,7 @@ Result<Report> section_5_4_3(const Setting& setting) {
       "Overlap is |found and true| / |true| over the images in which the ball is in view, nothing found counting as 0: "
       "the dissertation's tracking accuracy. Precision is |found and true| / |found| over the images with an answer.",
       "False: images in which something that does not touch the ball was taken for it, of all. Without a mask dark "
-      "histograms are searched everywhere.",
+      "histograms are searched everywhere. Every tracker is the stage track with the robot's units.",
       "With --html the six pictures of Figure 5.5, with --videos FOLDER the film with the mask drawn.",
       fmt::format("The curve is of one image in {}; each point has one darkness factor instead of three.",
                   kCurveEvery)};

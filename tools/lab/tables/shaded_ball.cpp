@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,7 +18,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/stages/shade_stage.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/ball_scoring.h"
@@ -23,22 +26,19 @@
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/film.h"
+#include "tools/lab/shade_trial.h"
 
 namespace cgsr::lab {
 namespace {
 
 constexpr int kCounted = 36;  // images of the first take
-constexpr int kWiden_cells = 1;
+constexpr StatedErrors kStated;
 constexpr std::array kFactors{0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75};
 constexpr double kTheirsWith = 0.742;
 constexpr double kTheirsWithout = 0.437;
 
 enum Contender : std::size_t { kWithMask, kWithout, kBrightOnly, kContenders };
 constexpr std::array<std::string_view, kContenders> kNames{"with the mask", "without a mask", "bright colours only"};
-
-color::ShadeMaskView view_of(const render::ShadeMasks& masks) {
-  return {masks.possibly_shaded.data(), masks.width, masks.height, masks.width};
-}
 
 /// What several trackers do in one take.
 struct Take {
@@ -76,18 +76,48 @@ Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, 
   return picture;
 }
 
-/// One tracker with the mask that it is given and what became of it.
+/// The film's masks: the stage shade with the true map, lamp and pose, told how far a robot's would be off.
+Result<stages::ShadowMasks> masks_for(const BallFilm& film, const config::Robot& robot) {
+  stages::ShadeStage stage(std::make_shared<const world::Map>(film.map()), film.camera(), robot.shade);
+  return masks_of(stage, row_of<stages::ShadeStage>(robot), film.X_WC(), kStated.pose(), kStated.lamp(film.p_WL()));
+}
+
+/// A mask that says: nothing is shaded.
+stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
+  const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
+  return given_masks({masks.width, masks.height, nothing, nothing});
+}
+
+/// One tracker with the masks that it is given.
 struct Entry {
-  color::IntegratedTracker tracker;
-  color::ShadeMaskView mask;
+  BallTracker tracker;
+  stages::ShadowMasks masks;
 };
 
-Result<Entry> entry(const BallFilm& film, const BallFilm::Shot& first, const Setting& setting,
-                    const color::IntegratedParameters& parameters, const color::ShadeMaskView& mask) {
+/// The contenders, then for each factor one with the masks and one without.
+Result<std::vector<Entry>> entries_of(const BallFilm& film, const BallFilm::Shot& first, const Setting& setting,
+                                      const config::Robot& robot, const stages::ShadowMasks& masks) {
+  std::vector<Entry> entries;
   const double focal_px = 0.5 * (film.camera().fx_px + film.camera().fy_px);
-  auto tracker = learned_ball(first.image, *first.orange, setting.configuration, parameters, focal_px);
-  if (!tracker) return tl::unexpected(tracker.error());
-  return Entry{std::move(*tracker), mask};
+  const auto add = [&](const color::IntegratedParameters& parameters,
+                       const stages::ShadowMasks& given) -> Result<void> {
+    auto tracker = learned_ball(first.image, *first.orange, setting.configuration, parameters,
+                                row_of<stages::TrackStage>(robot), focal_px);
+    if (!tracker) return tl::unexpected(tracker.error());
+    entries.push_back({std::move(*tracker), given});
+    return {};
+  };
+  for (const stages::ShadowMasks& given : {masks, stages::ShadowMasks{}, all_lit(*masks.masks)}) {
+    if (auto added = add(robot.integrated, given); !added) return tl::unexpected(added.error());
+  }
+  for (const double factor : kFactors) {
+    color::IntegratedParameters parameters = robot.integrated;
+    parameters.dark_factors.fill(factor);
+    for (const stages::ShadowMasks& given : {masks, stages::ShadowMasks{}}) {
+      if (auto added = add(parameters, given); !added) return tl::unexpected(added.error());
+    }
+  }
+  return entries;
 }
 
 /// A folder with some images of the film, the mask and the first box, for what is counted.
@@ -112,40 +142,24 @@ Result<void> save(BallFilm& film, const render::ShadeMasks& masks, const std::fi
 Result<Take> run_take(const Setting& setting, const config::Robot& robot, std::uint64_t seed) {
   auto film = BallFilm::make(seed);
   if (!film) return tl::unexpected(film.error());
-  render::ShadowVolumes volumes((*film)->map(), robot.shade.masks);
-  const render::ShadeMasks masks = volumes.look((*film)->X_WC(), (*film)->camera(), (*film)->p_WL(), kWiden_cells);
-  const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
-  const color::ShadeMaskView all_lit{nothing.data(), masks.width, masks.height, masks.width};
-
+  const auto shade = masks_for(**film, robot);
+  if (!shade) return tl::unexpected(shade.error());
+  const render::ShadeMasks& masks = *shade->masks;
   BallFilm::Shot shot = (*film)->shoot(0);
   if (!shot.orange) return fail("the ball is not in the first image");
-  std::vector<Entry> entries;
-  const std::array masks_given{view_of(masks), color::ShadeMaskView{}, all_lit};
-  for (const color::ShadeMaskView& mask : masks_given) {
-    auto one = entry(**film, shot, setting, robot.integrated, mask);
-    if (!one) return tl::unexpected(one.error());
-    entries.push_back(std::move(*one));
-  }
-  for (const double factor : kFactors) {
-    color::IntegratedParameters parameters = robot.integrated;
-    parameters.dark_factors.fill(factor);
-    for (const color::ShadeMaskView& mask : {view_of(masks), color::ShadeMaskView{}}) {
-      auto one = entry(**film, shot, setting, parameters, mask);
-      if (!one) return tl::unexpected(one.error());
-      entries.push_back(std::move(*one));
-    }
-  }
+  auto entries = entries_of(**film, shot, setting, robot, *shade);
+  if (!entries) return tl::unexpected(entries.error());
 
   Take take;
   take.shade = static_cast<double>(std::ranges::count(masks.possibly_shaded, 255)) /
                static_cast<double>(masks.possibly_shaded.size());
-  UnlimitedBudget budget;
   std::map<BallScene, int> of_scene;
   for (int number = 0; number < BallFilm::kImages; ++number) {
     if (number > 0) shot = (*film)->shoot(number);
     std::array<std::optional<Box>, kContenders> said;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const color::BallSighting seen = entries[i].tracker.track(shot.image.view(), entries[i].mask, budget);
+    for (std::size_t i = 0; i < entries->size(); ++i) {
+      Entry& entry = (*entries)[i];
+      const color::BallSighting seen = entry.tracker.track(shot.image.view(), entry.masks);
       const std::optional<Box> box = box_of(seen);
       if (i < kContenders) {
         said[i] = box;
@@ -185,9 +199,9 @@ Result<void> add_cost(const Setting& setting, const config::Robot& robot, Report
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-ball-{}", getpid());
   auto film = BallFilm::make(setting.seed);
   if (!film) return tl::unexpected(film.error());
-  render::ShadowVolumes volumes((*film)->map(), robot.shade.masks);
-  const render::ShadeMasks masks = volumes.look((*film)->X_WC(), (*film)->camera(), (*film)->p_WL(), kWiden_cells);
-  Result<void> done = save(**film, masks, folder);
+  const auto shade = masks_for(**film, robot);
+  if (!shade) return tl::unexpected(shade.error());
+  Result<void> done = save(**film, *shade->masks, folder);
   for (const bool with_mask : {true, false}) {
     if (!done) break;
     setting.progress("counting");
@@ -210,6 +224,46 @@ Result<void> add_cost(const Setting& setting, const config::Robot& robot, Report
   return done;
 }
 
+/// A contender's rows over all takes, and scene by scene.
+void add_contender(std::size_t i, const std::vector<Take>& all, Report& report) {
+  const std::string name(kNames[i]);
+  const auto takes = static_cast<int>(all.size());
+  BallScores sum;
+  double examined = 0.0;
+  for (const Take& take : all) {
+    for (std::size_t k = 0; k < kBallScenes; ++k) sum.of_scene[k].add(take.scores[i].of_scene[k]);
+    examined += take.examined[i] / takes;
+  }
+  const auto theirs = i == kWithMask  ? std::optional(kTheirsWith)
+                      : i == kWithout ? std::optional(kTheirsWithout)
+                                      : std::nullopt;
+  add_score(name, sum.all(), theirs, report);
+  report.rows.push_back({name, "compared", "windows", std::nullopt, examined, std::nullopt, takes * BallFilm::kImages});
+  for (int k = 0; k < kBallScenes; ++k) {
+    add_score(fmt::format("{}: {}", name, to_string(static_cast<BallScene>(k))),
+              sum.of_scene[static_cast<std::size_t>(k)], std::nullopt, report);
+  }
+}
+
+void add_factors(const std::vector<Take>& all, Report& report) {
+  const auto plot = [](const char* title, const char* unit) {
+    return Plot{title, "factor", unit, {{"with the mask", {}}, {"without a mask", {}}}};
+  };
+  Plot wrong = plot("False positives against the darkness factor", "share of images");
+  Plot accuracy = plot("Overlap against the darkness factor", "overlap");
+  for (std::size_t k = 0; k < kFactors.size(); ++k) {
+    for (const bool with : {true, false}) {
+      BallScore sum;
+      for (const Take& take : all) sum.add((with ? take.factor_with : take.factor_without)[k]);
+      wrong.curves[with ? 0 : 1].points.push_back({kFactors[k], sum.false_share(), std::nullopt});
+      accuracy.curves[with ? 0 : 1].points.push_back({kFactors[k], sum.mean(sum.overlap), std::nullopt});
+      add_score(fmt::format("factor {:.2f}, {}", kFactors[k], kNames[with ? kWithMask : kWithout]), sum, std::nullopt,
+                report);
+    }
+  }
+  report.plots = {std::move(wrong), std::move(accuracy)};
+}
+
 }  // namespace
 
 Result<Report> shaded_ball(const Setting& setting) {
@@ -225,57 +279,24 @@ Result<Report> shaded_ball(const Setting& setting) {
   Report report;
   report.title =
       fmt::format("a ball in light and shade, {} takes of {} images, a minute each", takes, BallFilm::kImages);
+  for (std::size_t i = 0; i < kContenders; ++i) add_contender(i, all, report);
   double shade = 0.0;
-  for (std::size_t i = 0; i < kContenders; ++i) {
-    const std::string name(kNames[i]);
-    BallScores sum;
-    double examined = 0.0;
-    for (const Take& take : all) {
-      for (std::size_t k = 0; k < kBallScenes; ++k) sum.of_scene[k].add(take.scores[i].of_scene[k]);
-      examined += take.examined[i] / takes;
-    }
-    const auto theirs = i == kWithMask  ? std::optional(kTheirsWith)
-                        : i == kWithout ? std::optional(kTheirsWithout)
-                                        : std::nullopt;
-    add_score(name, sum.all(), theirs, report);
-    report.rows.push_back(
-        {name, "compared", "windows", std::nullopt, examined, std::nullopt, takes * BallFilm::kImages});
-    for (int k = 0; k < kBallScenes; ++k) {
-      add_score(fmt::format("{}: {}", name, to_string(static_cast<BallScene>(k))),
-                sum.of_scene[static_cast<std::size_t>(k)], std::nullopt, report);
-    }
-  }
   for (std::size_t take = 0; take < all.size(); ++take) {
     shade += all[take].shade / takes;
     for (const Contender i : {kWithMask, kWithout}) {
       add_score(fmt::format("{}, take {}", kNames[i], take + 1), all[take].scores[i].all(), std::nullopt, report);
     }
   }
-  Plot plot{"False positives against the darkness factor",
-            "factor",
-            "share of images",
-            {{"with the mask", {}}, {"without a mask", {}}}};
-  Plot accuracy{
-      "Overlap against the darkness factor", "factor", "overlap", {{"with the mask", {}}, {"without a mask", {}}}};
-  for (std::size_t k = 0; k < kFactors.size(); ++k) {
-    for (const bool with : {true, false}) {
-      BallScore sum;
-      for (const Take& take : all) sum.add((with ? take.factor_with : take.factor_without)[k]);
-      plot.curves[with ? 0 : 1].points.push_back({kFactors[k], sum.false_share(), std::nullopt});
-      accuracy.curves[with ? 0 : 1].points.push_back({kFactors[k], sum.mean(sum.overlap), std::nullopt});
-      add_score(fmt::format("factor {:.2f}, {}", kFactors[k], kNames[with ? kWithMask : kWithout]), sum, std::nullopt,
-                report);
-    }
-  }
-  report.plots = {std::move(plot), std::move(accuracy)};
+  add_factors(all, report);
   if (setting.count) {
     if (auto done = add_cost(setting, *robot, report); !done) return tl::unexpected(done.error());
   }
   report.pictures = std::move(all.front().pictures);
   report.notes = {
-      fmt::format("A still camera 5 m from the table; the mask by pipeline/render out of the true map, lamp and pose, "
-                  "{} cell wider: {:.0f} % of the image.",
-                  kWiden_cells, 100.0 * shade),
+      fmt::format("A still camera 5 m from the table; the mask by the stage shade out of the true map, lamp and pose, "
+                  "widened by the errors that a robot states (section-5.4.2): {:.0f} % of the image. The stage track "
+                  "has the robot's units.",
+                  100.0 * shade),
       "Overlap is |found and true| / |true| over the images in which the ball is in view, nothing found counting as 0: "
       "the dissertation's tracking accuracy, there by a robot under its own control and by hand-labelled boxes.",
       "Right: images answered as they are, with IoU above 0.5 or with nothing where there is nothing, of all.",
