@@ -1,6 +1,7 @@
 #include "tools/lab/localization/trial.h"
 
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -45,14 +46,25 @@ bool Outcome::false_correction() const {
                               (error.direction_rad > prior.direction_rad && error.direction_rad > kFalse_rad));
 }
 
-Outcome correct_once(localization::Localizer& localizer, const ImageView& image, const localization::Prior& prior,
+std::unique_ptr<stages::LocalizeStage> localize_stage(const Survey& measured,
+                                                      const config::Localization& configuration) {
+  stages::LocalizationSetup setup;
+  setup.map = std::make_shared<const world::Map>(measured.map);
+  setup.camera = measured.camera;
+  setup.X_RC = measured.X_RC;
+  setup.localizer = configuration.localizer;
+  setup.tracking = configuration.tracker;
+  return std::make_unique<stages::LocalizeStage>(std::move(setup));
+}
+
+Outcome correct_once(stages::LocalizeStage& stage, const ImageView& image, const localization::Prior& prior,
                      const Standpoint& truth, const geometry::Pose& X_RC_told) {
-  localizer.restart();
+  stage.restart();
   Outcome outcome;
   UnlimitedBudget budget;
   do {
     count_stage_begin();
-    outcome.answer = localizer.correct(image, prior, budget);
+    outcome.answer = stage.correct(budget, image, prior);
     count_stage_end("correct");
     count_image_end();
     ++outcome.images;
@@ -96,7 +108,7 @@ void add_rows(const std::string& row, const Tally& tally, std::uint64_t seed, Re
   }
   report.rows.push_back(std::move(position));
   report.rows.push_back(std::move(direction));
-  report.rows.push_back(mean_row(row, "images needed", "", tally.images, seed));
+  report.rows.push_back(mean_row(row, "images needed, no limit on work", "", tally.images, seed));
   report.rows.push_back(share_row(row, "false corrections", tally.wrong, tally.trials));
 }
 

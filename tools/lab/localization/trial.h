@@ -1,11 +1,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "pipeline/localization/localizer.h"
+#include "pipeline/stages/localize_stage.h"
 #include "src/config/load.h"
 #include "tools/lab/localization/standpoints.h"
 #include "tools/lab/report.h"
@@ -46,8 +47,13 @@ struct Outcome {
   [[nodiscard]] bool false_correction() const;
 };
 
-/// Hands over `image` until there is an answer: the camera stands still.
-Outcome correct_once(localization::Localizer& localizer, const ImageView& image, const localization::Prior& prior,
+/// The robot's own stage with what was measured of camera, mount and map. A method without a gate (the paper's, Stronger's) is one of its
+/// parameters.
+std::unique_ptr<stages::LocalizeStage> localize_stage(const Survey& measured,
+                                                      const config::Localization& configuration);
+
+/// Hands over `image` until there is an answer: the camera stands still. The work of a call has no limit but the search's own.
+Outcome correct_once(stages::LocalizeStage& stage, const ImageView& image, const localization::Prior& prior,
                      const Standpoint& truth, const geometry::Pose& X_RC_told);
 
 /// What many trials of one contender gave.

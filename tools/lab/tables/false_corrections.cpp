@@ -157,8 +157,7 @@ class WorldTrials {
       }
       told = &changed;
     }
-    localization::Localizer localizer(told->map, told->camera, configuration_.localizer);
-    return correct_once(localizer, photo->view(), prior, *at, told->X_RC);
+    return correct_once(*localize_stage(*told, configuration_), photo->view(), prior, *at, told->X_RC);
   }
 
  private:
@@ -187,58 +186,70 @@ class WorldTrials {
   int done_ = 0;
 };
 
+/// What came of all trials, and by what they are told apart.
+struct Counts {
+  Sums all;
+  std::map<Kind, Sums> by_kind;
+  std::map<double, Sums> by_scale;
+  std::map<std::string_view, Sums> by_world;
+  std::map<double, Tally> right_errors;  ///< by scale
+  int not_found = 0;
+
+  void add(const Drawn& drawn, std::string_view world, const Outcome& outcome) {
+    for (Sums* sums : {&all, &by_kind[drawn.kind], &by_scale[drawn.scale], &by_world[world]}) {
+      ++sums->trials;
+      sums->wrong += outcome.false_correction() ? 1 : 0;
+      sums->corrected += outcome.answer.corrected ? 1 : 0;
+    }
+    if (drawn.kind == Kind::kRight) right_errors[drawn.scale].add(outcome);
+  }
+};
+
+/// The trials of one world: every fifth.
+Result<void> run_world(const Setting& setting, const config::Localization& floor, std::size_t w, Counts& counts) {
+  WorldTrials world(setting, floor, kWorlds[w], kWorlds[(w + 2) % kWorlds.size()]);
+  if (auto opened = world.open(); !opened) return opened;
+  for (std::size_t n = w; n < static_cast<std::size_t>(setting.trials); n += kWorlds.size()) {
+    const Drawn drawn{static_cast<int>(n), kKinds[n / 5 % kKinds.size()], kScales[n / 5 % kScales.size()]};
+    const auto outcome = world.run(drawn);
+    if (!outcome) return tl::unexpected(outcome.error());
+    if (!*outcome) {
+      ++counts.not_found;
+      continue;
+    }
+    counts.add(drawn, kWorlds[w], **outcome);
+    setting.progress(fmt::format("{}, trial {} of {}: {} false", kWorlds[w], n + 1, setting.trials, counts.all.wrong));
+  }
+  return {};
+}
+
+void add_all_rows(const Counts& counts, Report& report) {
+  const auto add = [&](const std::string& row, const Sums& sums) {
+    report.rows.push_back(share_row(row, "corrected", sums.corrected, sums.trials));
+    report.rows.push_back(share_row(row, "false corrections", sums.wrong, sums.trials));
+  };
+  add("all", counts.all);
+  for (const auto& [kind, sums] : counts.by_kind) add(std::string(kKindNames[static_cast<std::size_t>(kind)]), sums);
+  for (const auto& [scale, sums] : counts.by_scale) add(fmt::format("prior {:.0f} times as wide", scale), sums);
+  for (const auto& [world, sums] : counts.by_world) add(std::string(world), sums);
+  for (const auto& [scale, tally] : counts.right_errors) {
+    add_rows(fmt::format("right map, nothing in front, prior {:.0f} times as wide", scale), tally, report.seed, report);
+  }
+}
+
 }  // namespace
 
 Result<Report> false_corrections(const Setting& setting) {
   const auto floor = shipped_localization("floor");
   if (!floor) return tl::unexpected(floor.error());
-  const int trials = setting.trials;
-  Sums all;
-  std::map<Kind, Sums> by_kind;
-  std::map<double, Sums> by_scale;
-  std::map<std::string_view, Sums> by_world;
-  std::map<double, Sums> right;  // by scale
-  std::map<double, Tally> right_errors;
-  int not_found = 0;
+  Counts counts;
   for (std::size_t w = 0; w < kWorlds.size(); ++w) {
-    WorldTrials world(setting, *floor, kWorlds[w], kWorlds[(w + 2) % kWorlds.size()]);
-    if (auto opened = world.open(); !opened) return tl::unexpected(opened.error());
-    for (int i = 0; i < trials; ++i) {
-      const auto n = static_cast<std::size_t>(i);
-      if (n % kWorlds.size() != w) continue;
-      const Drawn drawn{i, kKinds[n / 5 % kKinds.size()], kScales[n / 5 % kScales.size()]};
-      auto outcome = world.run(drawn);
-      if (!outcome) return tl::unexpected(outcome.error());
-      if (!*outcome) {
-        ++not_found;
-        continue;
-      }
-      const bool wrong = (*outcome)->false_correction();
-      const bool corrected = (*outcome)->answer.corrected;
-      for (Sums* sums : {&all, &by_kind[drawn.kind], &by_scale[drawn.scale], &by_world[kWorlds[w]]}) {
-        ++sums->trials;
-        sums->wrong += wrong ? 1 : 0;
-        sums->corrected += corrected ? 1 : 0;
-      }
-      if (drawn.kind == Kind::kRight) right_errors[drawn.scale].add(**outcome);
-      setting.progress(fmt::format("{}, trial {} of {}: {} false", kWorlds[w], i + 1, trials, all.wrong));
-    }
+    if (auto done = run_world(setting, *floor, w, counts); !done) return tl::unexpected(done.error());
   }
-
   Report report;
-  report.title = fmt::format("'corrected' claimed and wrong, {} trials", all.trials);
-  const auto add = [&](const std::string& row, const Sums& sums) {
-    report.rows.push_back(share_row(row, "corrected", sums.corrected, sums.trials));
-    report.rows.push_back(share_row(row, "false corrections", sums.wrong, sums.trials));
-  };
-  add("all", all);
-  for (const auto& [kind, sums] : by_kind) add(std::string(kKindNames[static_cast<std::size_t>(kind)]), sums);
-  for (const auto& [scale, sums] : by_scale) add(fmt::format("prior {:.0f} times as wide", scale), sums);
-  for (const auto& [world, sums] : by_world) add(std::string(world), sums);
-  for (const auto& [scale, tally] : right_errors) {
-    add_rows(fmt::format("right map, nothing in front, prior {:.0f} times as wide", scale), tally, setting.seed,
-             report);
-  }
+  report.seed = setting.seed;
+  report.title = fmt::format("'corrected' claimed and wrong, {} trials", counts.all.trials);
+  add_all_rows(counts, report);
   report.notes = {
       "False: 'corrected' is claimed with an error above both the prior's and 5 cm, or above both the prior's and 1.5 "
       "degrees.",
@@ -248,11 +259,11 @@ Result<Report> false_corrections(const Setting& setting) {
       "with at most "
       "two such edges, a quarter one to three people or pieces of furniture in front that no map holds.",
       "Calibration is off as in table-4.1. The prior's belief is as wide as its errors."};
-  for (const auto& [scale, tally] : right_errors) {
+  for (const auto& [scale, tally] : counts.right_errors) {
     report.notes.push_back(tally.refusals(fmt::format("Right map, prior {:.0f} times as wide,", scale)));
   }
-  if (not_found > 0)
-    report.notes.push_back(fmt::format("{} trials found no view of their kind and were left out.", not_found));
+  if (counts.not_found > 0)
+    report.notes.push_back(fmt::format("{} trials found no view of their kind and were left out.", counts.not_found));
   return report;
 }
 

@@ -318,7 +318,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
   if (!map) return tl::unexpected(map.error());
   const geometry::Camera camera{640, 480, 700.0, 700.0, 320.0, 240.0};
   const Vector3d centre = centre_of(*map);
-  localization::Localizer localizer(*map, camera, free.localizer);
+  const auto stage = localize_stage({camera, geometry::Pose::Identity(), *map}, free);
   const auto pictures = pictures_of(kCastle / "Images");
   const int most = std::min(setting.trials, static_cast<int>(pictures.size()));
   for (const double off : {2.0, 5.0}) {
@@ -342,7 +342,7 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
       const ImageView image{grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step),
                             PixelFormat::kGrey8};
       const Outcome outcome =
-          correct_once(localizer, image, trial.prior, {trial.X_WC, trial.X_WC, 0}, geometry::Pose::Identity());
+          correct_once(*stage, image, trial.prior, {trial.X_WC, trial.X_WC, 0}, geometry::Pose::Identity());
       if (!outcome.answer.corrected) ++refused[std::string(to_string(outcome.answer.reason))];
       ours.add(outcome.answer.corrected ? std::optional(outcome.answer.X_WC) : std::nullopt, trial.X_WC, centre);
     }
