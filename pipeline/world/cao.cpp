@@ -18,6 +18,7 @@
 
 #include "pipeline/geometry/pose.h"
 #include "pipeline/world/file_text.h"
+#include "pipeline/world/map_folder.h"
 
 namespace cgsr::world {
 namespace {
@@ -47,7 +48,8 @@ std::optional<Number> number_in(std::string_view text) {
 
 class Reader {
  public:
-  Reader(Soup& soup, const CaoLimits& limits) : soup_(soup), limits_(limits) {}
+  Reader(Soup& soup, const CaoLimits& limits, const MapFolder& folder)
+      : soup_(soup), limits_(limits), folder_(folder) {}
 
   Result<void> read(const std::filesystem::path& path, const geometry::Pose& X_WF) {
     std::error_code error;
@@ -217,9 +219,9 @@ class Reader {
         if (turns) X_FG.linear() = geometry::rotation_of(*three);
         rest.remove_prefix(end + 1);
       }
-      const std::filesystem::path wanted(name);
-      const std::filesystem::path file = wanted.is_absolute() ? wanted : path.parent_path() / wanted;
-      auto good = reader.read(file, X_WF * X_FG);
+      const auto file = reader.folder_.find(path.parent_path() / std::filesystem::path(name));
+      if (!file) return wrong(file.error().message);
+      auto good = reader.read(*file, X_WF * X_FG);
       if (!good) return fail(fmt::format("{} (loaded in {}:{})", good.error().message, path.string(), line));
       return {};
     }
@@ -359,6 +361,7 @@ class Reader {
 
   Soup& soup_;
   const CaoLimits& limits_;
+  MapFolder folder_;
   std::vector<std::filesystem::path> open_;
   std::size_t files_ = 0;
   std::size_t lines_ = 0;
@@ -370,7 +373,7 @@ class Reader {
 Result<Soup> read_cao(const std::filesystem::path& path, const CaoLimits& limits) {
   Soup soup;
   soup.materials.push_back({"model", Eigen::Vector3f::Constant(0.5F), false});
-  if (auto good = Reader(soup, limits).read(path, geometry::Pose::Identity()); !good)
+  if (auto good = Reader(soup, limits, MapFolder(path)).read(path, geometry::Pose::Identity()); !good)
     return tl::unexpected(good.error());
   return soup;
 }

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <fstream>
-#include <initializer_list>
-#include <ios>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -21,6 +16,7 @@
 
 #include "pipeline/world/file_text.h"
 #include "pipeline/world/soup.h"
+#include "platform/replace_file.h"
 
 namespace cgsr::world {
 namespace {
@@ -225,30 +221,6 @@ Result<Map> map_in(const Head& head, std::string_view text) {
   return map;
 }
 
-std::string cause() {
-  return errno != 0 ? std::strerror(errno) : "unknown cause";
-}
-
-// Beside it first: what is there stays there until all of the new one is.
-Result<void> put_in_place(const std::filesystem::path& path, std::initializer_list<std::string_view> parts) {
-  std::filesystem::path beside = path;
-  beside += ".part";
-  const auto refused = [&](const std::string& what) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    return fail(fmt::format("{}: {}", path.string(), what));
-  };
-  errno = 0;
-  std::ofstream file(beside, std::ios::trunc | std::ios::binary);
-  for (const std::string_view part : parts) file.write(part.data(), static_cast<std::streamsize>(part.size()));
-  file.close();
-  if (!file) return refused(fmt::format("cannot be written: {}", cause()));
-  std::error_code error;
-  std::filesystem::rename(beside, path, error);
-  if (error) return refused(fmt::format("cannot be put in place: {}", error.message()));
-  return {};
-}
-
 }  // namespace
 
 Result<void> write_compact(const Map& map, const std::filesystem::path& path) {
@@ -263,7 +235,7 @@ Result<void> write_compact(const Map& map, const std::filesystem::path& path) {
   head.digest = digest_of(body);
   std::array<char, sizeof(Head)> first{};
   std::memcpy(first.data(), &head, sizeof(Head));
-  return put_in_place(path, {std::string_view(first.data(), first.size()), body});
+  return replace_file(path, {std::string_view(first.data(), first.size()), body});
 }
 
 Result<Map> read_compact(const std::filesystem::path& path) {

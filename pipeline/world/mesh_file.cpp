@@ -22,6 +22,9 @@
 #include <assimp/Importer.hpp>
 
 #include "pipeline/world/file_text.h"
+#include "pipeline/world/glb_check.h"
+#include "pipeline/world/map_folder.h"
+#include "pipeline/world/map_io.h"
 
 namespace cgsr::world {
 namespace {
@@ -59,16 +62,19 @@ bool too_deep(std::string_view text) {
   return false;
 }
 
-// The JSON of either kind of file: all of a .gltf, the first chunk of a .glb (after 20 bytes of heads, as long as the 4 from the 12th on say).
-Result<bool> gltf_too_deep(const std::filesystem::path& path) {
+// What is wrong with a glTF file before assimp reads it; empty: nothing. The JSON is all of a .gltf and the first chunk of a .glb (after 20
+// bytes of headers, as long as the 4 from the 12th on say).
+Result<std::string> gltf_problem(const std::filesystem::path& path) {
   const auto text = read_text(path);
   if (!text) return tl::unexpected(text.error());
-  if (!is_a(path, ".glb")) return too_deep(*text);
-  if (text->size() < 20) return false;
+  const std::string deep = fmt::format("brackets are nested more than {} deep", kDeepest);
+  if (!is_a(path, ".glb")) return too_deep(*text) ? deep : "";
+  if (std::string problem = glb_problem(*text); !problem.empty()) return problem;
+  if (text->size() < 20) return "";
   std::uint32_t length = 0;
   for (std::size_t i = 0; i < 4; ++i)
     length |= static_cast<std::uint32_t>(static_cast<unsigned char>((*text)[12 + i])) << (8U * i);
-  return too_deep(std::string_view(*text).substr(20, length));
+  return too_deep(std::string_view(*text).substr(20, length)) ? deep : "";
 }
 
 // The first word of a line and what follows it.
@@ -93,13 +99,15 @@ void each_line(std::string_view text, const Take& take) {
 }
 
 // The materials that an OBJ's libraries really give a Kd: assimp fills in a grey of its own for the others.
-std::set<std::string, std::less<>> given_colors(const std::filesystem::path& obj) {
+std::set<std::string, std::less<>> given_colors(const MapFolder& folder) {
   std::set<std::string, std::less<>> given;
-  const auto text = read_text(obj);
+  const auto text = read_text(folder.map());
   if (!text) return given;
   each_line(*text, [&](std::string_view word, std::string_view name) {
     if (word != "mtllib") return;
-    const auto library = read_text(obj.parent_path() / std::filesystem::path(name));
+    const auto file = folder.find(folder.map().parent_path() / std::filesystem::path(name));
+    if (!file) return;
+    const auto library = read_text(*file);
     if (!library) return;
     std::string material;
     each_line(*library, [&](std::string_view key, std::string_view value) {
@@ -201,19 +209,23 @@ Result<Soup> read_mesh_file(const std::filesystem::path& path, const LoadOptions
   if (bytes > kLargestBytes) return wrong(fmt::format("{} bytes are more than {} MB", bytes, kLargestBytes >> 20U));
   const bool gltf = is_a(path, ".gltf") || is_a(path, ".glb");
   if (gltf) {
-    const auto deep = gltf_too_deep(path);
-    if (!deep) return tl::unexpected(deep.error());
-    if (*deep) return wrong(fmt::format("brackets are nested more than {} deep", kDeepest));
+    const auto problem = gltf_problem(path);
+    if (!problem) return tl::unexpected(problem.error());
+    if (!problem->empty()) return wrong(*problem);
   }
   try {
+    const MapFolder folder(path);
     Assimp::Importer importer;
+    auto* const io = new MapIo(folder);
+    importer.SetIOHandler(io);  // which deletes it
     const aiScene* scene = importer.ReadFile(path.string(), 0);
+    if (!io->refused().empty()) return wrong(io->refused());
     if (scene == nullptr || scene->mRootNode == nullptr) return wrong(importer.GetErrorString());
     Soup soup;
     for (unsigned i = 0; i < scene->mNumMaterials; ++i)
       soup.materials.push_back(material_of(*scene->mMaterials[i], gltf));
     if (!gltf) {
-      const auto given = given_colors(path);
+      const auto given = given_colors(folder);
       for (Material& material : soup.materials) {
         if (given.find(material.name) == given.end()) material.known_color = false;
         if (!material.known_color) material.color.setConstant(0.5F);

@@ -207,26 +207,75 @@ TEST(CompactMap, ComesBackAsItWas) {
   EXPECT_EQ(back->materials[1].color, map.materials[1].color);
 }
 
-// A map is imported over itself, and the disk is full.
-TEST(CompactMapFault, WhatCannotBeWrittenLeavesTheOldOne) {
-  const ScratchFolder scratch;
-  ASSERT_TRUE(write_compact(small_map(), scratch / "a.cgsrmap"));
-  EXPECT_FALSE(std::filesystem::exists(scratch / "a.cgsrmap.part"));
-  const std::string before = text_of(scratch / "a.cgsrmap");
-  Map other = small_map();
-  other.materials[0].name = "another";
-  std::filesystem::create_symlink("/dev/full", scratch / "a.cgsrmap.part");
-  const auto full = write_compact(other, scratch / "a.cgsrmap");
-  ASSERT_FALSE(full);
-  EXPECT_THAT(full.error().message, HasSubstr("a.cgsrmap: cannot be written: No space left on device"));
-  EXPECT_EQ(text_of(scratch / "a.cgsrmap"), before);
+/// A folder `map` with a map, and a file beside it that is none of the map's business.
+class MapFolderFault : public testing::Test {
+ protected:
+  MapFolderFault() {
+    std::filesystem::create_directories(scratch_ / "map" / "below");
+    write(scratch_ / "secret.mtl", "newmtl floor\nKd 0 0 1\n");
+    write(scratch_ / "secret.cao", "password: hunter2\n");
+    write(scratch_ / "secret.bin", std::string(1000, '\0'));
+    std::filesystem::create_symlink("../secret.mtl", scratch_ / "map" / "link.mtl");
+  }
 
+  [[nodiscard]] std::string refusal_of(const std::string& name, const std::string& text) const {
+    write(scratch_ / "map" / name, text);
+    const auto map = load_map(scratch_ / "map" / name);
+    return map ? "" : map.error().message;
+  }
+
+  ScratchFolder scratch_;
+};
+
+constexpr const char* kTriangle = "usemtl floor\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+TEST_F(MapFolderFault, MaterialsOutsideOfItAreNotOpened) {
+  for (const std::string& name : {std::string("../secret.mtl"), std::string("link.mtl")}) {
+    EXPECT_THAT(refusal_of("a.obj", "mtllib " + name + "\n" + kTriangle), HasSubstr("lies outside of the map's folder"))
+        << name;
+  }
+  write(scratch_ / "map" / "below" / "own.mtl", "newmtl floor\nKd 0 0 1\n");
+  EXPECT_EQ(refusal_of("a.obj", std::string("mtllib below/own.mtl\n") + kTriangle), "");
+  EXPECT_EQ(refusal_of("a.obj", std::string("mtllib below/../below/own.mtl\n") + kTriangle), "");
+}
+
+TEST_F(MapFolderFault, ModelsOutsideOfItAreNeitherOpenedNorQuoted) {
+  for (const std::string& name : {std::string("../secret.cao"), (scratch_ / "secret.cao").string()}) {
+    const std::string refused = refusal_of("a.cao", "V1\nload(\"" + name + "\")\n0\n0\n0\n0\n0\n0\n");
+    EXPECT_THAT(refused, HasSubstr("a.cao:2: '")) << name;
+    EXPECT_THAT(refused, HasSubstr("lies outside of the map's folder"));
+    EXPECT_THAT(refused, testing::Not(HasSubstr("hunter2")));
+  }
+}
+
+// A header or a chunk that claims 2 GB would be allocated before it is read.
+TEST(MapFault, ABinaryGltfClaimsMoreThanItHas) {
+  const ScratchFolder scratch;
+  const auto little = [](std::uint32_t number) {
+    std::string text;
+    for (int i = 0; i < 4; ++i) text += static_cast<char>(number >> (8 * i));
+    return text;
+  };
+  const auto refusal_of = [&](std::uint32_t file, std::uint32_t chunk) {
+    const std::string json = R"({"asset":{}}    )";
+    write(scratch / "a.glb", "glTF" + little(2) + little(file) + little(chunk) + "JSON" + json);
+    const auto map = load_map(scratch / "a.glb");
+    return map ? "" : map.error().message;
+  };
+  EXPECT_THAT(refusal_of(0x80000000U, 16), HasSubstr("its header claims 2147483648 bytes, the file has 36"));
+  EXPECT_THAT(refusal_of(36, 0x7FFFFFF0U), HasSubstr("a chunk claims 2147483632 bytes, 16 are left in the file"));
+  EXPECT_THAT(refusal_of(36, 16), testing::Not(HasSubstr("claims")));
+}
+
+TEST(CompactMapFault, WhatCannotBeWrittenIsNamed) {
+  const ScratchFolder scratch;
   std::filesystem::create_directory(scratch / "b.cgsrmap");
-  const auto folder = write_compact(other, scratch / "b.cgsrmap");
+  const auto folder = write_compact(small_map(), scratch / "b.cgsrmap");
   ASSERT_FALSE(folder);
   EXPECT_THAT(folder.error().message, HasSubstr("b.cgsrmap: cannot be put in place"));
-  EXPECT_FALSE(std::filesystem::exists(scratch / "b.cgsrmap.part"));
-  EXPECT_FALSE(write_compact(other, "/nowhere/at/all.cgsrmap"));
+  EXPECT_FALSE(write_compact(small_map(), "/nowhere/at/all.cgsrmap"));
+  EXPECT_THAT(write_compact(small_map(), "/dev/full").error().message,
+              HasSubstr("/dev/full: cannot be written: No space left on device"));
 }
 
 TEST(CompactMapFault, DamageIsNoticed) {
