@@ -54,7 +54,11 @@ Result<Board> parse_board(const std::string& text, double square_m) {
 std::optional<std::vector<cv::Point2f>> find_board(const cv::Mat& grey, const Board& board) {
   std::vector<cv::Point2f> corners;
   const cv::Size size(board.columns, board.rows);
-  if (!cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) return std::nullopt;
+  // The quick search needs a white margin around the squares. The exhaustive one, on the grey levels as they are, does without: dark
+  // surroundings right beside the outer squares confuse the normalized image.
+  const bool found = cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_NORMALIZE_IMAGE) ||
+                     cv::findChessboardCornersSB(grey, size, corners, cv::CALIB_CB_EXHAUSTIVE);
+  if (!found) return std::nullopt;
   if (corners.size() != static_cast<std::size_t>(board.columns * board.rows)) return std::nullopt;
   // Counted so that x, y and the way away from the viewer are a right-handed frame.
   const auto corner = [&](int c, int r) { return corners[static_cast<std::size_t>(r * board.columns + c)]; };

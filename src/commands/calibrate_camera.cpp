@@ -10,6 +10,7 @@
 #include "pipeline/calibration/intrinsics.h"
 #include "src/commands/board_views.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/input/camera_file.h"
 #include "src/output/picture.h"
 #include "src/output/text_file.h"
@@ -24,9 +25,19 @@ struct Options {
   std::string picture;
   bool third_radial = false;
   bool json = false;
+  bool force = false;
 };
 
+Result<void> claim_outputs(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.look.input, "--input");
+  files.writes(options.output, "--output", camera_yaml());
+  files.writes(options.picture, "--picture", picture_file());
+  return files.claim();
+}
+
 int run_camera(const Options& options) {
+  if (const auto claimed = claim_outputs(options); !claimed) return report(claimed.error());
   const auto board = calibration::parse_board(options.look.board, options.look.square_m);
   if (!board) return report(board.error());
   const auto found = find_views(options.look, *board, true);
@@ -98,6 +109,7 @@ void add_calibrate_camera(CLI::App& calibrate, int& exit_code) {
   camera->add_option("--picture", options->picture, "picture of all corners");
   camera->add_flag("--k3", options->third_radial, "a third radial term too, for wide lenses");
   camera->add_flag("--json", options->json, "as JSON");
+  add_force_option(*camera, options->force);
   camera->callback([options, &exit_code] { exit_code = run_camera(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include "pipeline/calibration/mount.h"
 #include "src/commands/board_views.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
 #include "src/input/pose_pairs.h"
@@ -35,6 +36,7 @@ struct Options {
   std::string output;
   std::string picture;
   bool json = false;
+  bool force = false;
 };
 
 nlohmann::json three(const Eigen::Vector3d& v) {
@@ -159,7 +161,20 @@ int run_mount_from_poses(const Options& options) {
                        {"predicted", pairs->predicted}});
 }
 
+Result<void> claim_outputs(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.look.input, "--input");
+  files.reads(options.camera, "--camera");
+  files.reads(options.board_poses, "--board-poses");
+  files.reads(options.poses, "--poses");
+  files.reads(options.odometry, "--odometry");
+  files.writes(options.output, "--output", toml_with({"mount"}));
+  files.writes(options.picture, "--picture", picture_file());
+  return files.claim();
+}
+
 int run_mount(const Options& options) {
+  if (const auto claimed = claim_outputs(options); !claimed) return report(claimed.error());
   const bool from_boards = !options.look.input.empty();
   const bool from_poses = !options.poses.empty() && !options.odometry.empty();
   if (from_boards == from_poses) {
@@ -198,6 +213,7 @@ void add_calibrate_mount(CLI::App& calibrate, int& exit_code) {
   mount->add_option("--output", options->output, "robot file to write (TOML, section [mount])");
   mount->add_option("--picture", options->picture, "picture of corners seen and fitted");
   mount->add_flag("--json", options->json, "as JSON");
+  add_force_option(*mount, options->force);
   mount->callback([options, &exit_code] { exit_code = run_mount(*options); });
 }
 

@@ -10,6 +10,7 @@
 
 #include "pipeline/calibration/odometry.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/input/pose_pairs.h"
 #include "src/input/robot_calibration.h"
@@ -31,6 +32,7 @@ struct Options {
   std::string output;
   std::string picture;
   bool json = false;
+  bool force = false;
 };
 
 /// The way by the odometry before (red) and after (green), over the true one (black).
@@ -79,7 +81,18 @@ Result<PosePairs> poses_of_robot(const Options& options) {
   return pairs;
 }
 
+Result<void> claim_outputs(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.odometry, "--odometry");
+  files.reads(options.poses, "--poses");
+  files.reads(options.mount, "--mount");
+  files.writes(options.output, "--output", toml_with({"odometry"}));
+  files.writes(options.picture, "--picture", picture_file());
+  return files.claim();
+}
+
 int run_odometry(const Options& options) {
+  if (const auto claimed = claim_outputs(options); !claimed) return report(claimed.error());
   const auto pairs = poses_of_robot(options);
   if (!pairs) return report(pairs.error());
   const auto scales = calibration::calibrate_odometry(pairs->first, pairs->second, options.stretch_m);
@@ -148,6 +161,7 @@ void add_calibrate_odometry(CLI::App& calibrate, int& exit_code) {
   odometry->add_option("--output", options->output, "TOML to write, section [odometry]");
   odometry->add_option("--picture", options->picture, "picture of the ways");
   odometry->add_flag("--json", options->json, "as JSON");
+  add_force_option(*odometry, options->force);
   odometry->callback([options, &exit_code] { exit_code = run_odometry(*options); });
 }
 

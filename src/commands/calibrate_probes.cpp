@@ -9,6 +9,7 @@
 
 #include "pipeline/calibration/probes.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/light_setup.h"
 #include "src/input/pose_file.h"
 #include "src/output/text_file.h"
@@ -25,6 +26,7 @@ struct Options {
   std::vector<double> lamp;
   std::string output;
   bool json = false;
+  bool force = false;
 };
 
 nlohmann::json three(const Eigen::Vector3d& v) {
@@ -73,7 +75,19 @@ Result<calibration::ProbeCalibration> probes_from(const Options& options, int& p
   return calibrated;
 }
 
+Result<void> claim_output(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.input, "--input");
+  files.reads(options.camera, "--camera");
+  reads_configuration(files, options.config, "--config");
+  files.reads(options.mount, "--mount");
+  files.reads(options.poses, "--poses");
+  files.writes(options.output, "--output", toml_with({"mount", "board", "board.probe"}));
+  return files.claim();
+}
+
 int run_probes(const Options& options) {
+  if (const auto claimed = claim_output(options); !claimed) return report(claimed.error());
   int predicted = 0;
   const auto calibration = probes_from(options, predicted);
   if (!calibration) return report(calibration.error());
@@ -136,6 +150,7 @@ void add_calibrate_probes(CLI::App& calibrate, int& exit_code) {
       ->required();
   probes->add_option("--output", options->output, "robot file to write (TOML, sections [mount] and [board])");
   probes->add_flag("--json", options->json, "as JSON");
+  add_force_option(*probes, options->force);
   probes->callback([options, &exit_code] { exit_code = run_probes(*options); });
 }
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/config/listing.h"
 #include "src/config/load.h"
 #include "src/config/robot_docs.h"
@@ -14,12 +15,17 @@
 namespace cgsr::app {
 namespace {
 
+int put(const std::string& text) {
+  fmt::print("{}", text);
+  return kSuccess;
+}
+
 /// Writes to a file, or to standard output where none is named.
-int put(const std::string& text, const std::string& file) {
-  if (file.empty()) {
-    fmt::print("{}", text);
-    return kSuccess;
-  }
+int put(const std::string& text, const std::string& file, const FileKind& kind, bool force) {
+  if (file.empty()) return put(text);
+  OutputClaims files(force);
+  files.writes(file, "--output", kind);
+  if (const auto claimed = files.claim(); !claimed) return report(claimed.error());
   const auto written = write_file(file, text);
   return written ? kSuccess : report(written.error());
 }
@@ -27,7 +33,7 @@ int put(const std::string& text, const std::string& file) {
 int run_show(const std::string& file) {
   const auto robot = config::load_sections(file);
   if (!robot) return report(robot.error());
-  return put(config::show_text(*robot), "");
+  return put(config::show_text(*robot));
 }
 
 int run_diff(const std::string& file, const std::string& other_file) {
@@ -35,20 +41,24 @@ int run_diff(const std::string& file, const std::string& other_file) {
   if (!robot) return report(robot.error());
   const auto other = other_file.empty() ? Result<config::Robot>(config::Robot{}) : config::load_sections(other_file);
   if (!other) return report(other.error());
-  return put(config::diff_text(*robot, *other), "");
+  return put(config::diff_text(*robot, *other));
 }
 
-int run_keys(const std::string& pattern, const std::string& output) {
-  if (!output.empty()) return put(config::robot_docs(), output);
+int run_keys(const std::string& pattern, const std::string& output, bool force) {
+  if (!output.empty()) {
+    const std::string page = config::robot_docs();
+    return put(page, output, text_beginning(page.substr(0, page.find('\n'))), force);
+  }
   const std::string text = config::keys_text(pattern);
   if (text.empty()) return report(Error{fmt::format("no key contains '{}'; cgsr config keys lists all", pattern)});
-  return put(text, "");
+  return put(text);
 }
 
 void add_new(CLI::App& config, int& exit_code) {
   struct Options {
     bool webcam = false;
     bool recording = false;
+    bool force = false;
     std::string output;
   };
   auto options = std::make_shared<Options>();
@@ -58,9 +68,11 @@ void add_new(CLI::App& config, int& exit_code) {
   kind->add_flag("--recording", options->recording, "a recording, processed as fast as possible");
   kind->require_option(1);
   command->add_option("--output", options->output, "the file to write; without it the text is printed");
+  add_force_option(*command, options->force);
   command->callback([options, &exit_code] {
     const auto text = options->webcam ? config::webcam_starter() : config::recording_starter();
-    exit_code = put(std::string(text), options->output);
+    // One that was edited is no longer the same text: it is not lost.
+    exit_code = put(std::string(text), options->output, same_text(std::string(text)), options->force);
   });
 }
 
@@ -84,10 +96,12 @@ void add_diff(CLI::App& config, int& exit_code) {
 void add_keys(CLI::App& config, int& exit_code) {
   auto pattern = std::make_shared<std::string>();
   auto output = std::make_shared<std::string>();
+  auto force = std::make_shared<bool>(false);
   auto* command = config.add_subcommand("keys", "explain keys: default, unit, range and meaning");
   auto* some = command->add_option("PATTERN", *pattern, "only keys that contain this text, such as motion.max");
   command->add_option("--output", *output, "write the page of all keys (docs/config.md)")->excludes(some);
-  command->callback([pattern, output, &exit_code] { exit_code = run_keys(*pattern, *output); });
+  add_force_option(*command, *force);
+  command->callback([pattern, output, force, &exit_code] { exit_code = run_keys(*pattern, *output, *force); });
 }
 
 }  // namespace

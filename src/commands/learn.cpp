@@ -9,6 +9,7 @@
 #include "pipeline/color/learn/model_file.h"
 #include "platform/config/canonical.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/config/load.h"
 #include "src/input/image_input.h"
@@ -25,6 +26,9 @@ struct LearnOptions {
   std::string output;
   std::string preview;
   std::string config;
+  bool force = false;
+
+  [[nodiscard]] std::string preview_file() const { return preview.empty() ? output + ".png" : preview; }
 };
 
 /// The images that are learned from, kept with the inputs that lend them.
@@ -55,7 +59,17 @@ Result<Views> open_views(const LearnOptions& options) {
   return views;
 }
 
+Result<void> claim_outputs(const LearnOptions& options) {
+  OutputClaims files(options.force);
+  files.reads(options.input, "--input");
+  reads_configuration(files, options.config, "--config");
+  files.writes(options.output, "--output", color_model());
+  files.writes(options.preview_file(), "--preview", picture_file());
+  return files.claim();
+}
+
 int run_learn(const LearnOptions& options) {
+  if (const auto claimed = claim_outputs(options); !claimed) return report(claimed.error());
   const auto config = config::load_color(options.config);
   if (!config) return report(config.error());
   const auto views = open_views(options);
@@ -65,7 +79,7 @@ int run_learn(const LearnOptions& options) {
   if (!learned) return report(learned.error());
   if (const auto saved = color::save_model(learned->model, options.output); !saved) return report(saved.error());
 
-  const std::string preview = options.preview.empty() ? options.output + ".png" : options.preview;
+  const std::string preview = options.preview_file();
   if (const auto written = write_picture(preview, draw_preview(views->samples, *learned)); !written) {
     return report(written.error());
   }
@@ -85,6 +99,7 @@ void add_learn_command(CLI::App& app, int& exit_code) {
   command->add_option("--output", options->output, "model file to write")->required();
   command->add_option("--preview", options->preview, "picture of what was learned; default: OUTPUT.png");
   command->add_option("--config", options->config, "a robot's file, or one with just the section [color]");
+  add_force_option(*command, options->force);
   command->callback([options, &exit_code] { exit_code = run_learn(*options); });
 }
 

@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include "platform/config/canonical.h"
 #include "platform/stop.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/light_run.h"
 #include "src/output/progress.h"
 
@@ -13,10 +15,12 @@ namespace cgsr::app {
 namespace {
 
 int run_light(const LightOptions& options) {
-  auto run = LightRun::open(options);
-  if (!run) return report(run.error());
   StopRequest stop;
   const StopOnSignals signals(stop);
+  std::optional<EndAtOnceOnSignals> loading(std::in_place, kInterrupted);
+  auto run = LightRun::open(options);
+  if (!run) return report(run.error());
+  loading.reset();
   Progress progress;
   bool ended = false;
   while (!stop.requested() && !ended) {
@@ -56,6 +60,7 @@ void add_light_command(CLI::App& app, int& exit_code) {
   command->add_option(
       "--csv", options->csv,
       "write a row for each lamp of each image: robot frame, or the world's where --pose says where the robot was");
+  add_force_option(*command, options->force);
   command->callback([options, &exit_code] { exit_code = run_light(*options); });
 }
 

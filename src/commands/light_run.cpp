@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "platform/count_marks.h"
+#include "src/commands/files.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -28,6 +29,17 @@ stages::PlacedRobot placed(const PoseRow& pose) {
   return robot;
 }
 
+Result<void> claim_outputs(const LightOptions& options) {
+  OutputClaims files(options.force);
+  reads_configuration(files, options.config, "--config");
+  files.reads(options.camera, "--camera");
+  files.reads(options.mount, "--mount");
+  files.reads(options.input, "--input");
+  files.reads(options.pose, "--pose");
+  files.writes(options.csv, "--csv", csv_file(kColumns));
+  return files.claim();
+}
+
 std::string unanswered_row(int frame, std::string_view reason) {
   return fmt::format("{},0,{},,,,,\n", frame, reason);
 }
@@ -43,6 +55,7 @@ LightRun::LightRun(const LightOptions& options, LightSetup setup, std::vector<Po
       causes_(static_cast<std::size_t>(ObservationStatus::kSaturated) + 1) {}
 
 Result<LightRun> LightRun::open(const LightOptions& options) {
+  if (auto claimed = claim_outputs(options); !claimed) return tl::unexpected(claimed.error());
   auto setup = open_light_setup(options.config, options.camera, options.mount, options.input);
   if (!setup) return tl::unexpected(setup.error());
   if (const auto checked = illumination::check_lamp(setup->board, setup->config.lamp); !checked) {

@@ -19,6 +19,7 @@ struct LightOptions {
   std::string input;
   std::string pose;
   std::string csv;
+  bool force = false;
 };
 
 /// The work of `cgsr light`: the stage that finds lamps, an image at a time.

@@ -7,6 +7,7 @@
 #include "platform/config/canonical.h"
 #include "platform/stop.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/localize_run.h"
 #include "src/commands/option_checks.h"
 #include "src/output/progress.h"
@@ -15,10 +16,10 @@ namespace cgsr::app {
 namespace {
 
 int run_localize(const LocalizeOptions& options) {
-  auto run = LocalizeRun::open(options);
-  if (!run) return report(run.error());
   StopRequest stop;
   const StopOnSignals signals(stop);
+  auto run = LocalizeRun::open(options);
+  if (!run) return report(run.error());
   Progress progress;
   bool ended = false;
   while (!stop.requested() && !ended) {
@@ -81,6 +82,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", options->csv, "write a row for each image");
   command->add_option("--video", options->video, "write a video with the map's edges over the images");
   command->add_option("--json", options->json, "write the summary for machines");
+  add_force_option(*command, options->force);
   command->callback([command, options, &exit_code] {
     if (options->pose.empty() == options->priors.empty()) {
       throw CLI::ValidationError(command->get_name(), "give either --pose or --priors");

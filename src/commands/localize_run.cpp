@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pipeline/world/load.h"
 #include "platform/count_marks.h"
+#include "platform/stop.h"
 #include "platform/work_budget.h"
+#include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/config/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
@@ -28,6 +32,26 @@ Result<config::Localization> configuration_of(const LocalizeOptions& options) {
   return config;
 }
 
+std::string csv_columns() {
+  return fmt::format("frame,corrected,reason,{},matches,rms_px", kPoseColumns);
+}
+
+Result<void> claim_outputs(const LocalizeOptions& options) {
+  OutputClaims files(options.force);
+  files.reads(options.map, "--map");
+  files.reads(options.camera, "--camera");
+  files.reads(options.input, "--input");
+  files.reads(options.pose, "--pose");
+  files.reads(options.priors, "--priors");
+  files.reads(options.odometry, "--odometry");
+  files.reads(options.mount, "--mount");
+  reads_configuration(files, options.config, "--config");
+  files.writes(options.csv, "--csv", csv_file(csv_columns()));
+  files.writes(options.video, "--video", video_file());
+  files.writes(options.json, "--json", json_object());
+  return files.claim();
+}
+
 /// A pose to follow from was measured or found: it is believed better than one that odometry carried.
 localization::PriorSigmas start_sigmas(const config::PriorParameters& prior) {
   constexpr double kPlace_m = 0.02;
@@ -43,6 +67,8 @@ localization::PriorSigmas start_sigmas(const config::PriorParameters& prior) {
 Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   LocalizeRun run;
   State& state = *run.state_;
+  std::optional<EndAtOnceOnSignals> loading(std::in_place, kInterrupted);  // a large map takes seconds
+  if (auto claimed = claim_outputs(options); !claimed) return tl::unexpected(claimed.error());
   auto config = configuration_of(options);
   if (!config) return tl::unexpected(config.error());
   state.config = *config;
@@ -56,6 +82,7 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   if (state.map->edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
   if (auto opened = run.open_poses(options); !opened) return tl::unexpected(opened.error());
   if (auto opened = run.open_stage(); !opened) return tl::unexpected(opened.error());
+  loading.reset();
   if (auto opened = run.open_outputs(options); !opened) return tl::unexpected(opened.error());
   return run;
 }
@@ -128,9 +155,7 @@ Result<void> LocalizeRun::open_outputs(const LocalizeOptions& options) {
     auto csv = TextFile::create(options.csv);
     if (!csv) return tl::unexpected(csv.error());
     csv_.emplace(std::move(*csv));
-    if (auto head = csv_->add_line(fmt::format("frame,corrected,reason,{},matches,rms_px", kPoseColumns)); !head) {
-      return head;
-    }
+    if (auto head = csv_->add_line(csv_columns()); !head) return head;
   }
   if (!options.video.empty()) {
     state_->expectation = std::make_unique<render::DepthRaster>(*state_->map, render::RasterParameters{});

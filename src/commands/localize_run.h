@@ -35,6 +35,7 @@ struct LocalizeOptions {
   std::string csv;
   std::string video;
   std::string json;
+  bool force = false;
   int units = 60;  ///< of work at each image after the first that is followed on odometry; 0: all that it asks for.
 };
 

@@ -16,6 +16,7 @@
 #include "pipeline/world/load.h"
 #include "platform/clock.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
@@ -34,7 +35,18 @@ struct Options {
   std::string camera;
   std::string pose;
   std::string image;
+  bool force = false;
 };
+
+Result<void> claim_output(const Options& options, const FileKind& kind) {
+  OutputClaims files(options.force);
+  files.reads(options.file, "the map");
+  files.reads(options.camera, "--camera");
+  files.reads(options.pose, "--pose");
+  files.reads(options.image, "--image");
+  files.writes(options.output, "--output", kind);
+  return files.claim();
+}
 
 Result<world::Map> load(const Options& options) {
   world::LoadOptions how = options.load;
@@ -128,13 +140,11 @@ int run_info(const Options& options) {
 }
 
 int run_import(const Options& options) {
-  const std::filesystem::path output(options.output);
-  if (output.extension() != world::kCompactExtension)
-    return report(Error{fmt::format("{}: a compact map's name ends in {}", options.output, world::kCompactExtension)});
+  if (const auto claimed = claim_output(options, compact_map()); !claimed) return report(claimed.error());
   const auto map = load(options);
   if (!map) return report(map.error());
-  if (const auto written = world::write_compact(*map, output); !written) return report(written.error());
-  const auto back = world::load_map(output);
+  if (const auto written = world::write_compact(*map, options.output); !written) return report(written.error());
+  const auto back = world::load_map(options.output);
   if (!back) return report(back.error());
   print(*back, summary_of(*back));
   return kSuccess;
@@ -142,6 +152,7 @@ int run_import(const Options& options) {
 
 /// The map's edges as a camera at the pose sees them, over an image or over the map's own surfaces.
 int run_picture(const Options& options) {
+  if (const auto claimed = claim_output(options, picture_file()); !claimed) return report(claimed.error());
   const auto map = load(options);
   if (!map) return report(map.error());
   const auto camera = read_camera(options.camera);
@@ -203,6 +214,7 @@ void add_map_command(CLI::App& app, int& exit_code) {
       command->add_subcommand("import", "write the cleaned-up map with its edges as a compact, checked copy");
   add_load_options(*importing, *options);
   importing->add_option("--output", options->output, "the copy: NAME.cgsrmap")->required();
+  add_force_option(*importing, options->force);
   importing->callback([options, &exit_code] { exit_code = run_import(*options); });
 
   const auto add_view = [&](CLI::App& view) {
@@ -210,6 +222,7 @@ void add_map_command(CLI::App& app, int& exit_code) {
     view.add_option("--camera", options->camera, "intrinsics (YAML, as ROS writes them)")->required();
     view.add_option("--pose", options->pose, "where the camera is in the map: CSV of one row")->required();
     view.add_option("--output", options->output, "the picture")->required();
+    add_force_option(view, options->force);
     view.callback([options, &exit_code] { exit_code = run_picture(*options); });
   };
   add_view(*command->add_subcommand("render", "the map and its visible edges, seen from a pose"));

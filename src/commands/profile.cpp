@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/commands/run_robot.h"
 
@@ -22,6 +23,7 @@ void add_profile_command(CLI::App& app, int& exit_code) {
   command->add_flag("--arm", options->run.arm, "arm as soon as nothing speaks against it: the robot will move");
   command->add_option("--trace", options->run.trace, "write a trace of stages and control cycles (ui.perfetto.dev)");
   command->add_option("--json", options->json, "write the summary of the run for machines, under \"profile\" this one");
+  add_force_option(*command, options->force);
   command->add_option("--log-level", options->log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run_robot(*options); });

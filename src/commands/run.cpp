@@ -14,10 +14,13 @@
 #include "platform/stop.h"
 #include "src/boot/robot.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/commands/run_robot.h"
 #include "src/config/load.h"
+#include "src/input/pose_file.h"
 #include "src/output/text_file.h"
+#include "src/sinks/csv_sink.h"
 #include "src/sinks/profile.h"
 
 namespace cgsr::app {
@@ -55,6 +58,22 @@ int stopped_before_the_start(const Error& awaited) {
   return kSuccess;
 }
 
+Result<void> claim_outputs(const RunCommand& options, const config::Robot& config) {
+  OutputClaims files(options.force);
+  reads_robot(files, config);
+  files.writes(options.run.csv, "--csv", csv_file(sinks::csv_file_header()));
+  files.writes(options.run.video, "--video", video_file());
+  files.writes(options.run.trace, "--trace", json_list());
+  files.writes(options.run.recording, "--recording", mcap_file());
+  files.writes(options.run.status, "--status", json_object());
+  files.writes(options.json, "--json", json_object());
+  if (auto claimed = files.claim(); !claimed) return claimed;
+  // Read at the start and written at the end: the one file for which both is meant.
+  OutputClaims left(options.force);
+  left.writes(config.localization.start.file, "localization.start.file", csv_file(kPoseColumns));
+  return left.claim();
+}
+
 }  // namespace
 
 int run_robot(const RunCommand& options) {
@@ -68,6 +87,7 @@ int run_robot(const RunCommand& options) {
   auto config = config::load_robot(options.config);
   if (!config) return report(config.error());
   if (auto applied = apply(options, *config); !applied) return report(applied.error());
+  if (auto claimed = claim_outputs(options, *config); !claimed) return report(claimed.error());
   boot::RunOptions run = options.run;
   if (options.wait_for_devices) run.wait_for_devices = &stop;
   auto robot = boot::Robot::build(*config, run);
@@ -107,6 +127,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                       "write a recording in MCAP (Foxglove): outputs and images");
   command->add_option("--status", options->run.status, "rewrite this file every second, for cgsr top");
   command->add_option("--json", options->json, "write the summary for machines");
+  add_force_option(*command, options->force);
   command->add_option("--log-level", options->log_level, "trace, debug, info, warning, error or off")
       ->capture_default_str();
   command->callback([options, &exit_code] { exit_code = run_robot(*options); });

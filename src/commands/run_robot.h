@@ -15,6 +15,7 @@ struct RunCommand {
   std::string log_level = "info";
   int seed = -1;
   bool wait_for_devices = false;
+  bool force = false;
   boot::RunOptions run;
 };
 

@@ -14,6 +14,7 @@
 #include "pipeline/world/load.h"
 #include "platform/work_budget.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
@@ -32,6 +33,7 @@ struct Options {
   std::string image;
   double lamp_sigma_m = 0.0;
   stages::ShadeStageParameters shade;
+  bool force = false;
 };
 
 /// Darkens what lies in shade and tints blue what may: the masks as the robot has them, cell by cell.
@@ -51,6 +53,16 @@ void draw_masks(const render::ShadeMasks& masks, cv::Mat& picture) {
 double share(const std::vector<std::uint8_t>& mask) {
   const auto lit = std::count(mask.begin(), mask.end(), std::uint8_t{0});
   return 100.0 * (1.0 - static_cast<double>(lit) / static_cast<double>(mask.size()));
+}
+
+Result<void> claim_output(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.map, "--map");
+  files.reads(options.camera, "--camera");
+  files.reads(options.pose, "--pose");
+  files.reads(options.image, "--image");
+  files.writes(options.output, "--output", picture_file());
+  return files.claim();
 }
 
 /// The lamp as the command line gives it.
@@ -79,6 +91,7 @@ Result<stages::ShadowMasks> masks_of(const Options& options, std::shared_ptr<con
 }
 
 int run_shade(const Options& options) {
+  if (const auto claimed = claim_output(options); !claimed) return report(claimed.error());
   auto loaded = world::load_map(options.map);
   if (!loaded) return report(loaded.error());
   const auto map = std::make_shared<const world::Map>(std::move(*loaded));
@@ -136,6 +149,7 @@ void add_shade_command(CLI::App& app, int& exit_code) {
                    "standard deviations of lamp and map by which that mask is widened; 0: not at all")
       ->check(in_range(0.0, 10.0))
       ->capture_default_str();
+  add_force_option(*command, options->force);
   command->callback([options, &exit_code] { exit_code = run_shade(*options); });
 }
 

@@ -13,6 +13,7 @@
 #include "platform/config/canonical.h"
 #include "platform/stop.h"
 #include "src/commands/command.h"
+#include "src/commands/files.h"
 #include "src/commands/option_checks.h"
 #include "src/commands/track_run.h"
 #include "src/commands/track_session.h"
@@ -128,6 +129,7 @@ void add_track_command(CLI::App& app, int& exit_code) {
   command->add_option("--csv", options->csv, "write a row per image");
   command->add_option("--video", options->video, "write a video with box, lights and divergence");
   command->add_option("--json", options->json, "write the summary for machines");
+  add_force_option(*command, options->force);
   command->add_option("--config", options->config, "a robot's file, or one with just the section [color]");
   command
       ->add_option("--mode", options->mode,

@@ -1,6 +1,7 @@
 #include "src/commands/track_session.h"
 
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -8,10 +9,25 @@
 
 #include "pipeline/color/learn/learn.h"
 #include "pipeline/color/learn/model_file.h"
+#include "src/commands/files.h"
 #include "src/config/load.h"
 
 namespace cgsr::app {
 namespace {
+
+constexpr std::string_view kColumns = "frame,found,x,y,width,height,divergence,light_r,light_g,light_b";
+
+Result<void> claim_outputs(const TrackOptions& options) {
+  OutputClaims files(options.force);
+  files.reads(options.input, "--input");
+  files.reads(options.model, "--model");
+  files.reads(options.truth, "--truth");
+  reads_configuration(files, options.config, "--config");
+  files.writes(options.csv, "--csv", csv_file(kColumns));
+  files.writes(options.video, "--video", video_file());
+  files.writes(options.json, "--json", json_object());
+  return files.claim();
+}
 
 Result<config::Color> configuration_of(const TrackOptions& options) {
   auto config = config::load_color(options.config);
@@ -34,7 +50,7 @@ Result<void> open_csv(const std::string& path, Session& session) {
   auto csv = TextFile::create(path);
   if (!csv) return tl::unexpected(csv.error());
   session.csv.emplace(std::move(*csv));
-  return session.csv->add_line("frame,found,x,y,width,height,divergence,light_r,light_g,light_b");
+  return session.csv->add_line(kColumns);
 }
 
 Result<void> open_video(const std::string& path, Session& session) {
@@ -50,6 +66,7 @@ Result<void> open_video(const std::string& path, Session& session) {
 
 Result<Session> open_session(const TrackOptions& options) {
   Session session;
+  if (auto claimed = claim_outputs(options); !claimed) return tl::unexpected(claimed.error());
   auto config = configuration_of(options);
   if (!config) return tl::unexpected(config.error());
   session.config = *config;

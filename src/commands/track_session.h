@@ -29,6 +29,7 @@ struct TrackOptions {
   std::string config;
   std::string mode;
   std::string scale_to;
+  bool force = false;
 };
 
 /// Everything that is opened before the first image is looked at, so that what cannot be written or read is said at once.

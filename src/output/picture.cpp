@@ -9,9 +9,19 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "platform/replace_file.h"
+#include "src/output/picture_size.h"
 
 namespace cgsr::app {
 Result<cv::Mat> read_picture(const std::string& file, const geometry::Camera& camera, const std::string& camera_file) {
+  const cv::Size expected(camera.width_px, camera.height_px);
+  const auto differs = [&](cv::Size size) {
+    return fail(fmt::format("{}: {}x{} px, but {} is of a camera of {}x{}", file, size.width, size.height, camera_file,
+                            camera.width_px, camera.height_px));
+  };
+  const auto stated = size_in_header(file);
+  if (!stated) return fail(fmt::format("{}: no image that can be read: expected PNG, JPEG, BMP or PNM", file));
+  // Before it takes memory. A JPEG from a camera that was turned is turned back by the reader.
+  if (*stated != expected && *stated != cv::Size(expected.height, expected.width)) return differs(*stated);
   cv::Mat picture;
   try {
     picture = cv::imread(file, cv::IMREAD_COLOR);
@@ -19,10 +29,7 @@ Result<cv::Mat> read_picture(const std::string& file, const geometry::Camera& ca
     return fail(fmt::format("{}: cannot be read as an image: {}", file, wrong.err));
   }
   if (picture.empty()) return fail(fmt::format("{}: no image that can be read", file));
-  if (picture.cols != camera.width_px || picture.rows != camera.height_px) {
-    return fail(fmt::format("{}: {}x{} px, but {} is of a camera of {}x{}", file, picture.cols, picture.rows,
-                            camera_file, camera.width_px, camera.height_px));
-  }
+  if (picture.size() != expected) return differs(picture.size());
   return picture;
 }
 

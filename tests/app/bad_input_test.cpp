@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -216,9 +218,55 @@ TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {
                  "no/such/t.avi");
   expect_refused(run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "m", "--preview",
                            scratch_ / "p.what"}),
-                 "p.what: cannot be written as an image");
+                 "p.what: expected the name of a picture to end in .png");
   expect_refused(run_cgsr({"learn", "--input", images(), "--region", region_, "--output", scratch_ / "no/such/m"}),
                  "no/such/m");
+}
+
+// What a command reads survives it, whatever was mistyped, with --force too; nothing is begun that could not be finished.
+TEST_F(BadInputFault, OutputsThatWouldDestroyAnInput) {
+  const auto folder = images();
+  const auto learned = model();
+  const auto before = read_text(learned);
+  write_text(scratch_ / "truth.txt", "40,80,60,80\n");
+  write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/video.toml", {}));
+  std::filesystem::create_symlink("m", scratch_ / "link");
+  for (const std::string option : {"--csv", "--json"}) {
+    for (const std::string output :
+         {scratch_ / "m", scratch_ / "link", scratch_ / "truth.txt", scratch_ / "robot.toml"}) {
+      expect_refused(run_cgsr({"track", "--input", folder, "--model", learned, "--truth", scratch_ / "truth.txt",
+                               "--config", scratch_ / "robot.toml", option, output, "--force"}),
+                     option + " " + output + ": is read as");
+    }
+  }
+  expect_refused(run_cgsr({"learn", "--input", folder, "--region", region_, "--output", scratch_ / "other", "--preview",
+                           folder + "/0001.png", "--force"}),
+                 "0001.png: is read as --input");
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "other"));
+  expect_refused(run_cgsr({"run", "--config", scratch_ / "robot.toml", "--input", folder, "--model", learned, "--csv",
+                           scratch_ / "run.csv", "--json", learned, "--force"}),
+                 "is read as --model");
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "run.csv"));
+  EXPECT_EQ(read_text(learned), before);
+}
+
+TEST_F(BadInputFault, OutputsThatWouldReplaceAFileOfAnotherKind) {
+  const auto folder = images();
+  write_text(scratch_ / "notes.txt", "not ours\n");
+  const std::vector<std::string> words{
+      "track", "--input", folder, "--learn", region_, "--csv", scratch_ / "t.csv", "--json", scratch_ / "notes.txt"};
+  expect_refused(run_cgsr(words), "notes.txt: exists and is not a JSON object");
+  EXPECT_EQ(read_text(scratch_ / "notes.txt"), "not ours\n");
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "t.csv"));
+  auto forced = words;
+  forced.emplace_back("--force");
+  EXPECT_EQ(run_cgsr(forced).exit_code, 0);
+  EXPECT_EQ(run_cgsr(words).exit_code, 0);  // its own kind now
+
+  ASSERT_EQ(run_cgsr({"config", "new", "--webcam", "--output", scratch_ / "new.toml"}).exit_code, 0);
+  ASSERT_EQ(run_cgsr({"config", "new", "--webcam", "--output", scratch_ / "new.toml"}).exit_code, 0);
+  write_text(scratch_ / "new.toml", read_text(scratch_ / "new.toml") + "# mine\n");
+  expect_refused(run_cgsr({"config", "new", "--webcam", "--output", scratch_ / "new.toml"}), "exists and is not");
 }
 
 TEST_F(BadInputFault, FullDisk) {

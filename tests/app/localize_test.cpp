@@ -1,7 +1,10 @@
 // cgsr localize on rendered images and on those that others made.
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <fmt/core.h>
@@ -214,6 +217,32 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
 }
 
 // A cube on a table: the map knows nothing of what fills most of the image. The camera and the first pose are those that came with it.
+// A map of 90,000 squares takes seconds to clean up: who stops the program meanwhile does not wait for it.
+TEST_F(LocalizeFilm, ASignalWhileALargeMapIsLoadedEndsItWithin200Milliseconds) {
+  constexpr int kSquares = 300;
+  std::string text;
+  for (int i = 0; i < kSquares * kSquares; ++i) {
+    const int x = i % kSquares;
+    const int y = i / kSquares;
+    const int z = (x + y) % 2;
+    text += fmt::format("v {} {} {}\nv {} {} {}\nv {} {} {}\nv {} {} {}\nf -4 -3 -2 -1\n", x, y, z, x + 1, y, z, x + 1,
+                        y + 1, z, x, y + 1, z);
+  }
+  write_text(file("large.obj"), text);
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    RunningCgsr running({"localize", "--map", file("large.obj"), "--camera", file("room/calibrated/camera.yaml"),
+                         "--input", file("film"), "--pose", file("pose.csv"), "--csv", file("large.csv")});
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    const auto begin = std::chrono::steady_clock::now();
+    running.send(signal);
+    const auto outcome = running.wait();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(200));
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.errors;
+    EXPECT_THAT(outcome.errors, HasSubstr("while loading"));
+    EXPECT_FALSE(std::filesystem::exists(file("large.csv")));
+  }
+}
+
 TEST(LocalizeCommand, FollowsTheRecordedCube) {
   CGSR_NEEDS_REAL_DATA("localization/cube");
   const std::filesystem::path folder = test::real_data("localization/cube");

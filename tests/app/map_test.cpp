@@ -63,7 +63,7 @@ TEST_F(MapCommand, ImportWritesACopyThatIsTheSame) {
   EXPECT_EQ(of_file, of_copy);
   const auto wrong = run_cgsr({"map", "import", at("map.obj"), "--output", at("copy.obj")});
   EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_THAT(wrong.errors, HasSubstr("ends in .cgsrmap"));
+  EXPECT_THAT(wrong.errors, HasSubstr("to end in .cgsrmap"));
 }
 
 TEST_F(MapCommand, RenderAndOverlayDrawWhatTheCameraSees) {

@@ -63,9 +63,9 @@ inline std::vector<cv::Point2f> corners_of(const geometry::Pose& X_CB, const Boa
   return out;
 }
 
-/// A grey image of the board, which has a white border.
+/// A grey image of the board. \param margin  its white border, in squares. \param around  the grey beside it.
 inline cv::Mat picture_of(const geometry::Pose& X_CB, const Board& board, const geometry::Camera& camera,
-                          std::mt19937& random) {
+                          std::mt19937& random, double margin = 0.7, double around = 110.0) {
   constexpr int kSamples = 3;
   cv::Mat picture(camera.height_px, camera.width_px, CV_8U);
   const geometry::Pose X_BC = X_CB.inverse();
@@ -80,10 +80,11 @@ inline cv::Mat picture_of(const geometry::Pose& X_CB, const Board& board, const 
         const Eigen::Vector3d p = X_BC.translation() + far * ray;
         const double u = p.x() / board.square_m;
         const double v = p.y() / board.square_m;
-        const bool on_paper = far > 0.0 && u > -1.7 && v > -1.7 && u < board.columns + 0.7 && v < board.rows + 0.7;
+        const bool on_paper = far > 0.0 && u > -1.0 - margin && v > -1.0 - margin && u < board.columns + margin &&
+                              v < board.rows + margin;
         const bool on_squares = on_paper && u > -1.0 && v > -1.0 && u < board.columns && v < board.rows;
         const bool black = on_squares && (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) % 2 == 0;
-        sum += !on_paper ? 110.0 : black ? 45.0 : 200.0;
+        sum += !on_paper ? around : black ? 45.0 : 200.0;
       }
       picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(sum / (kSamples * kSamples) + normal(random));
     }

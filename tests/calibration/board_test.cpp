@@ -31,6 +31,23 @@ TEST(BoardGolden, CornersAreFoundInTheBoardsOwnOrderHoweverItIsTurned) {
   }
 }
 
+// A board that was cut out along its squares, on a dark table: the quick search of OpenCV finds none of these.
+TEST(BoardGolden, IsFoundWithoutAWhiteMargin) {
+  std::mt19937 random(1);
+  const Board board{7, 4, 0.03};
+  const geometry::Camera camera = testing::true_camera();
+  for (int trial = 0; trial < 3; ++trial) {
+    const geometry::Pose X_CB = testing::board_before_camera(random, board, camera, 0.5, 0.5, 0.45);
+    const auto truth = testing::corners_of(X_CB, board, camera);
+    ASSERT_FALSE(truth.empty());
+    constexpr double kMargin = 0.0;
+    constexpr double kTable = 20.0;
+    const auto found = find_board(testing::picture_of(X_CB, board, camera, random, kMargin, kTable), board);
+    ASSERT_TRUE(found) << trial;
+    for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_LT(cv::norm((*found)[i] - truth[i]), 0.5) << trial;
+  }
+}
+
 TEST(BoardFault, NothingInAnEmptyImage) {
   EXPECT_FALSE(find_board(cv::Mat(240, 320, CV_8U, cv::Scalar(128)), Board{}));
 }

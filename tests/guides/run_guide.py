@@ -5,7 +5,8 @@ usage: run_guide.py PAGE --source FOLDER --build FOLDER
 
 The scratch folder looks like a clone after a build: everything but out/ is a link, build/release the given build. All fenced `sh`
 blocks of the page run in one shell, in their order. The test fails when a command fails, or when a file of out/ that the text
-announces (`out/...` in backticks) is missing or empty afterwards. `--keep FOLDER` copies out/ there, to be looked at.
+announces (`out/...` in backticks) is missing or empty afterwards, and before that when a link or picture of the page leads to a file
+that is not in the tree. `--keep FOLDER` copies out/ there, to be looked at.
 """
 import argparse
 import os
@@ -18,6 +19,7 @@ import tempfile
 
 FENCE = re.compile(r"^```([\w ]*)\n(.*?)^```$", re.M | re.S)
 OUTPUT = re.compile(r"`(out/[^`\s]+)`")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
 
 
 def commands_of(page, rebuild):
@@ -27,6 +29,12 @@ def commands_of(page, rebuild):
 
 def outputs_of(page):
     return sorted(set(OUTPUT.findall(FENCE.sub("", page))))
+
+
+def broken_links_of(page, folder):
+    """Links to files, relative to the page's folder, that do not exist. Anchors within pages are not looked at."""
+    files = [link.split("#")[0] for link in LINK.findall(FENCE.sub("", page)) if not re.match(r"[a-z]+:", link)]
+    return sorted({file for file in files if file and not (folder / file).exists()})
 
 
 def make_clone(scratch, source, build):
@@ -60,6 +68,9 @@ def main():
     commands = commands_of(page, arguments.rebuild)
     if not commands:
         sys.exit(f"{arguments.page}: no `sh` block to execute")
+    broken = broken_links_of(page, arguments.page.parent)
+    if broken:
+        sys.exit(f"{arguments.page}: links to files that do not exist: {', '.join(broken)}")
     with tempfile.TemporaryDirectory(prefix="cgsr-guide-") as folder:
         scratch = pathlib.Path(folder)
         if arguments.rebuild:

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "src/output/picture_size.h"
 #include "tests/world/scratch.h"
 
 namespace cgsr::app {
@@ -43,14 +44,26 @@ TEST_F(Picture, WhatIsWrittenIsReadBack) {
   EXPECT_EQ(cv::norm(*back, picture, cv::NORM_INF), 0.0);
 }
 
+TEST_F(Picture, ItsHeaderStatesItsSize) {
+  const cv::Mat picture(24, 32, CV_8UC3, cv::Scalar(10, 20, 30));
+  for (const char* name : {"a.png", "a.jpg", "a.bmp", "a.ppm"}) {
+    ASSERT_TRUE(write_picture(at(name), picture)) << name;
+    EXPECT_EQ(size_in_header(at(name)), cv::Size(32, 24)) << name;
+    EXPECT_TRUE(read_picture(at(name), camera_, "camera.yaml")) << name;
+  }
+}
+
 using PictureFault = Picture;
 
 TEST_F(PictureFault, ReadingNamesTheFileAndTheCause) {
   EXPECT_THAT(refusal("words.png", "no image"), HasSubstr("words.png: no image that can be read"));
   EXPECT_THAT(refusal("small.ppm", "P6\n1 1\n255\nabc"),
               HasSubstr("small.ppm: 1x1 px, but camera.yaml is of a camera of 32x24"));
-  // The library throws at sizes that it does not take.
-  EXPECT_THAT(refusal("wide.ppm", "P6\n2000000 2\n255\n"), HasSubstr("wide.ppm: cannot be read as an image: "));
+  // The header says enough: what would take 3 GB is not decoded.
+  EXPECT_THAT(refusal("wide.ppm", "P6\n# from afar\n2000000 2\n255\n"), HasSubstr("wide.ppm: 2000000x2 px, but"));
+  EXPECT_THAT(refusal("large.png", "\x89PNG\r\n\x1A\n" + std::string("\0\0\0\rIHDR\0\0\x75\x30\0\0\x75\x30", 16)),
+              HasSubstr("large.png: 30000x30000 px, but"));
+  EXPECT_THAT(refusal("cut.png", "\x89PNG\r\n\x1A\n"), HasSubstr("cut.png: no image that can be read"));
   EXPECT_THAT(read_picture("/nowhere/a.png", camera_, "camera.yaml").error().message,
               HasSubstr("/nowhere/a.png: no image"));
 }
