@@ -6,6 +6,7 @@
 #include "tools/lab/configurations.h"
 #include "tools/lab/source_path.h"
 #include "tools/lab/sources.h"
+#include "tools/lab/tables/faces_caltech.h"
 #include "tools/lab/tables/requirements.h"
 
 namespace cgsr::lab {
@@ -26,6 +27,7 @@ constexpr std::array<std::string_view, 9> kShadeRooms{
 constexpr std::array<std::string_view, 9> kBallRooms{
     "pipeline/color",          "pipeline/imaging", "pipeline/render",  "pipeline/geometry",        "hal/sim/render",
     "tools/lab/ball_film.cpp", "pipeline/stages",  "pipeline/runtime", "tools/lab/shade_trial.cpp"};
+constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
 constexpr std::array<std::string_view, 4> kWholeRobot{"pipeline", "hal/sim", "hal/rmp", "config/scenarios"};
 
 // In the order of the chapters. The trials are those that fit an hour together, counting included.
@@ -210,6 +212,16 @@ constexpr std::array kExperiments{
                lamp_robot_hash,
                kWholeRobot,
                {"tools/lab/tables/section_5_4_3.cpp", "config/worlds/home.toml"}},
+    Experiment{"faces-caltech",
+               "Whose face it is, on photographs (6.2.1)",
+               6,
+               1,
+               true,
+               false,
+               faces_caltech,
+               faces_hash,
+               kPersonRooms,
+               {"tools/lab/tables/faces_caltech.cpp"}},
 };
 
 void add_requirements(const Experiment& experiment, Report& report) {

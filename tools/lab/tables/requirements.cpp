@@ -165,6 +165,10 @@ constexpr std::array kRequirements{
     NamedRequirement{"section-5.4.3", "the run", "images", at_least(1821.0)},
     NamedRequirement{"section-5.4.3", "with the mask", "overlap", at_least(0.85)},
     NamedRequirement{"section-5.4.3", "brown ball", "tracked", at_most(0.0)},
+    // Chapter 6.
+    NamedRequirement{"faces-caltech", "caltech / ours", "accepted and right", at_least(0.95)},
+    NamedRequirement{"faces-caltech", "caltech / ours", "false acceptance, leave one out", at_most(0.03)},
+    NamedRequirement{"faces-caltech", "caltech / ours", "accepted with a single image", at_most(0.0)},
 };
 
 }  // namespace
