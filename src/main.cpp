@@ -30,6 +30,7 @@ int run_command_line(int argc, char** argv) {
   add_map_command(app, exit_code);
   add_localize_command(app, exit_code);
   add_light_command(app, exit_code);
+  add_people_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   add_shade_command(app, exit_code);
   add_sim_command(app, exit_code);

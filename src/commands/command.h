@@ -30,6 +30,7 @@ void add_track_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);
 void add_profile_command(CLI::App& app, int& exit_code);
 void add_top_command(CLI::App& app, int& exit_code);
+void add_people_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_light_command(CLI::App& app, int& exit_code);
 void add_localize_command(CLI::App& app, int& exit_code);

@@ -1,0 +1,201 @@
+#include "src/commands/people_run.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/person/face/face_descriptor.h"
+#include "src/input/identities_file.h"
+#include "src/input/small_file.h"
+#include "src/output/text_file.h"
+
+namespace cgsr::app {
+namespace {
+
+using person::FaceDescriptor;
+using person::FaceView;
+using person::Identity;
+using person::Label;
+
+constexpr const char* kColumns = "frame,identity,source,confidence,x,y,width,height";
+constexpr std::size_t kMaxCascadeBytes = std::size_t{16} << 20U;
+constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
+
+double distance(const FaceDescriptor& face, const FaceView& view) {
+  std::array<double, person::kViewSide * person::kViewSide> points{};
+  person::view_distances(face, view, points);
+  return std::accumulate(points.begin(), points.end(), 0.0) / static_cast<double>(points.size());
+}
+
+/// The first face, then again and again the one that is farthest from those chosen.
+std::vector<FaceView> most_different(const std::vector<FaceDescriptor>& faces, std::size_t count) {
+  std::vector<FaceView> views;
+  std::vector<double> nearest(faces.size(), 1.0);
+  std::size_t next = 0;
+  while (views.size() < std::min(count, faces.size())) {
+    views.push_back(person::view_of(faces[next]));
+    for (std::size_t i = 0; i < faces.size(); ++i) nearest[i] = std::min(nearest[i], distance(faces[i], views.back()));
+    nearest[next] = -1.0;
+    next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
+  }
+  return views;
+}
+
+/// The faces that are alone in their image.
+Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enrolled& enrolled) {
+  auto detector = open_face_detector(options);
+  if (!detector) return tl::unexpected(detector.error());
+  auto input = ImageInput::open({options.input, 0, 0, 0, 0});
+  if (!input) return tl::unexpected(input.error());
+  std::vector<FaceDescriptor> faces;
+  for (auto next = input->next(); !next.end && faces.size() < kMaxFaces; next = input->next()) {
+    ++enrolled.images;
+    if (!next.image) continue;
+    const auto found = detector->find_all(next.image.view());
+    if (found.size() != 1) continue;
+    if (auto face = person::describe_face(next.image.view(), found.front())) faces.push_back(std::move(*face));
+  }
+  enrolled.with_one_face = static_cast<int>(faces.size());
+  if (faces.empty()) {
+    return fail(fmt::format("{}: no image of {} with exactly one face", options.input, enrolled.images));
+  }
+  return faces;
+}
+
+person::FaceGallery gallery_of(const person::Identities& identities) {
+  person::FaceGallery gallery;
+  for (const Identity& one : identities.people) {
+    for (const FaceView& view : one.views) gallery.enroll(one.number, view);
+  }
+  return gallery;
+}
+
+std::string person_name(const person::Identities& identities, Label number) {
+  const auto one = std::ranges::find(identities.people, number, &Identity::number);
+  return one == identities.people.end() ? "a stranger" : one->name;
+}
+
+/// \return the person who gets the views: known already, or new.
+Result<Identity*> person_to_enroll(person::Identities& identities, const PeopleOptions& options) {
+  const auto known = std::ranges::find(identities.people, options.name, &Identity::name);
+  const bool is_known = known != identities.people.end();
+  if (is_known && !options.more) {
+    return fail(
+        fmt::format("{}: '{}' is there already, as number {}; --more adds views to that person, somebody else "
+                    "needs another name",
+                    options.identities, options.name, known->number));
+  }
+  if (!is_known && options.more) return fail(fmt::format("{}: there is no '{}'", options.identities, options.name));
+  if (is_known) return &*known;
+  identities.people.push_back({identities.next_number++, options.name, {}});
+  return &identities.people.back();
+}
+
+}  // namespace
+
+Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
+  const auto text = read_small_file(options.cascade, kMaxCascadeBytes, "a face cascade");
+  if (!text) return fail(text.error().message + "; Debian's opencv-data has one: --cascade names another place");
+  person::FaceDetectorParameters parameters;
+  parameters.min_face_px = options.min_face_px;
+  auto detector = person::FaceDetector::from_cascade(*text, parameters);
+  if (!detector) return fail(fmt::format("{}: {}", options.cascade, detector.error().message));
+  return detector;
+}
+
+Result<Enrolled> enroll(const PeopleOptions& options) {
+  auto opened = open_identities(options.identities);
+  if (!opened) return tl::unexpected(opened.error());
+  person::Identities& identities = opened->identities;
+  const person::FaceGallery others = gallery_of(identities);
+  const auto who = person_to_enroll(identities, options);
+  if (!who) return tl::unexpected(who.error());
+  Enrolled enrolled{.number = (*who)->number, .note = opened->note};
+  const auto faces = lone_faces(options, enrolled);
+  if (!faces) return tl::unexpected(faces.error());
+  for (const FaceDescriptor& face : *faces) {
+    const auto match = others.identify(face);
+    if (!match.label || *match.label == enrolled.number) continue;
+    return fail(fmt::format("{}: this is the face of '{}', who is enrolled already", options.input,
+                            person_name(identities, *match.label)));
+  }
+  const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
+  auto& views = (*who)->views;
+  for (const FaceView& view : most_different(*faces, max_views)) views.push_back(view);
+  if (views.size() > max_views) views.erase(views.begin(), views.end() - static_cast<std::ptrdiff_t>(max_views));
+  enrolled.views = static_cast<int>(views.size());
+  if (auto saved = save_identities(identities, options.identities); !saved) return tl::unexpected(saved.error());
+  return enrolled;
+}
+
+Result<int> forget(const PeopleOptions& options) {
+  auto identities = load_identities(options.identities);
+  if (!identities) return tl::unexpected(identities.error());
+  const auto is_it = [&](const Identity& one) { return one.name == options.name; };
+  const int count = static_cast<int>(std::erase_if(identities->people, is_it));
+  if (count == 0) return fail(fmt::format("{}: there is no '{}'", options.identities, options.name));
+  if (auto saved = save_identities(*identities, options.identities); !saved) return tl::unexpected(saved.error());
+  return count;
+}
+
+IdentifyRun::IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input,
+                         person::FaceDetector detector)
+    : options_(std::move(options)),
+      identities_(std::move(identities)),
+      input_(std::move(input)),
+      detector_(std::move(detector)),
+      gallery_(gallery_of(identities_)) {}
+
+Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
+  auto identities = load_identities(options.identities);
+  if (!identities) return tl::unexpected(identities.error());
+  if (identities->people.empty()) return fail(fmt::format("{}: nobody is enrolled", options.identities));
+  auto detector = open_face_detector(options);
+  if (!detector) return tl::unexpected(detector.error());
+  auto input = ImageInput::open({options.input, 0, 0, 0, 0});
+  if (!input) return tl::unexpected(input.error());
+  return IdentifyRun(options, std::move(*identities), std::move(*input), std::move(*detector));
+}
+
+void IdentifyRun::add_face(const ImageView& image, const Box& face) {
+  const auto descriptor = person::describe_face(image, face);
+  if (!descriptor) return;
+  const auto match = gallery_.identify(*descriptor);
+  const Label number = match.label.value_or(0);
+  ++seen_[number];
+  ++faces_;
+  rows_ += fmt::format("{},{},face,{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}\n", images_, number, match.confidence, face.x,
+                       face.y, face.width, face.height);
+}
+
+Result<bool> IdentifyRun::step() {
+  const auto next = input_.next();
+  if (next.end) return false;
+  if (next.image) {
+    const auto faces = detector_.find_all(next.image.view());
+    for (const Box& face : faces) add_face(next.image.view(), face);
+    if (faces.empty()) rows_ += fmt::format("{},,none,,,,,\n", images_);
+  } else {
+    problems_.push_back(fmt::format("image {}: {}", images_, next.problem));
+    rows_ += fmt::format("{},,unreadable,,,,,\n", images_);
+  }
+  ++images_;
+  return true;
+}
+
+Result<void> IdentifyRun::finish() const {
+  if (options_.csv.empty()) return {};
+  return write_file(options_.csv, fmt::format("{}\n{}", kColumns, rows_));
+}
+
+std::vector<std::string> IdentifyRun::summary() const {
+  std::vector<std::string> lines;
+  for (const auto& [number, count] : seen_)
+    lines.push_back(fmt::format("{:6} faces: number {}, {}", count, number, person_name(identities_, number)));
+  lines.insert(lines.end(), problems_.begin(), problems_.end());
+  return lines;
+}
+
+}  // namespace cgsr::app
