@@ -1,0 +1,117 @@
+#include "pipeline/person/colors/person_colors.h"
+
+#include <algorithm>
+
+namespace cgsr::person {
+namespace {
+
+// Samples and questions are divided by a light; what comes out above 1 is cut off by the histogram.
+std::vector<imaging::Rgb> textures(std::span<const imaging::Rgb> recorded, const color::Light& light) {
+  std::vector<imaging::Rgb> all;
+  all.reserve(recorded.size());
+  for (const imaging::Rgb& one : recorded) all.push_back(color::without_light(one, light));
+  return all;
+}
+
+// Alg. 3.1, lines 9 to 11.
+color::Light assumed_light(std::span<const imaging::Rgb> positive, double assumed) {
+  ColorHistogram recorded;
+  recorded.add(positive);
+  const imaging::Rgb bright = recorded.bright_level();
+  return {std::max(assumed, bright.r), std::max(assumed, bright.g), std::max(assumed, bright.b)};
+}
+
+}  // namespace
+
+SamplingRegions sampling_regions(const Box& face) {
+  const auto beside = [&](double x) { return Box{x, face.y, face.width, face.height}; };
+  return {{face.x, face.y + 1.5 * face.height, face.width, face.height},
+          {beside(face.x - 1.5 * face.width), beside(face.x + 1.5 * face.width)}};
+}
+
+PersonColors::Person* PersonColors::find(Label person) {
+  const auto found = std::ranges::find(people_, person, &Person::label);
+  return found == people_.end() ? nullptr : &*found;
+}
+
+const PersonColors::Person* PersonColors::find(Label person) const {
+  const auto found = std::ranges::find(people_, person, &Person::label);
+  return found == people_.end() ? nullptr : &*found;
+}
+
+PersonColors::Person& PersonColors::room_for(Label person) {
+  if (Person* known = find(person)) return *known;
+  if (people_.size() < static_cast<std::size_t>(parameters_.max_people)) return people_.emplace_back();
+  return *std::ranges::min_element(people_, {}, &Person::interest);
+}
+
+void PersonColors::put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+  person.positive.add(textures(positive, person.light));
+  person.negative.add(textures(negative, person.light));
+}
+
+void PersonColors::learn(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+  if (positive.empty()) return;
+  Person& one = room_for(person);
+  one.label = person;
+  one.interest = ++interest_;
+  one.positive.clear();
+  one.negative.clear();
+  one.light = assumed_light(positive, parameters_.light.assumed);
+  put(one, positive, negative);
+}
+
+void PersonColors::add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+  if (Person* known = find(person)) {
+    put(*known, positive, negative);
+  } else {
+    learn(person, positive, negative);
+  }
+}
+
+void PersonColors::forget(Label person) {
+  std::erase_if(people_, [&](const Person& one) { return one.label == person; });
+}
+
+void PersonColors::prefer(Label person) {
+  if (Person* known = find(person)) known->interest = ++interest_;
+}
+
+bool PersonColors::knows(Label person) const {
+  return find(person) != nullptr;
+}
+
+double PersonColors::share(Label person, const imaging::Rgb& recorded, const color::Light& light) const {
+  const Person* known = find(person);
+  return known == nullptr ? 0.0 : known->positive.share(color::without_light(recorded, light));
+}
+
+std::optional<color::Light> PersonColors::learned_light(Label person) const {
+  const Person* known = find(person);
+  return known == nullptr ? std::nullopt : std::optional(known->light);
+}
+
+std::vector<Label> PersonColors::order() const {
+  std::vector<Label> labels;
+  for (const Person& one : people_) labels.push_back(one.label);
+  return labels;
+}
+
+void PersonColors::make_map(std::span<const color::Light> lights, imaging::LabelTable& map) const {
+  map.assign(imaging::kColorCodes, 0);
+  std::vector<std::size_t> by_interest(people_.size());
+  for (std::size_t i = 0; i < by_interest.size(); ++i) by_interest[i] = i;
+  std::ranges::sort(by_interest, {}, [&](std::size_t i) { return people_[i].interest; });  // the latest is written last
+  for (const std::size_t i : by_interest) {
+    const Person& one = people_[i];
+    const color::Light& light = i < lights.size() ? lights[i] : one.light;
+    for (int code = 0; code < imaging::kColorCodes; ++code) {
+      const auto texture = color::without_light(imaging::rgb_of_code(static_cast<std::uint16_t>(code)), light);
+      const double share = one.positive.share(texture);
+      if (share < parameters_.min_share || share < parameters_.min_ratio * one.negative.share(texture)) continue;
+      map[static_cast<std::size_t>(code)] = static_cast<std::uint16_t>(i + 1);
+    }
+  }
+}
+
+}  // namespace cgsr::person

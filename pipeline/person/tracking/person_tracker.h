@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "pipeline/person/context.h"
+#include "pipeline/person/feedback.h"
+#include "pipeline/person/tracking/shirt_classifier.h"
+
+namespace cgsr::person {
+
+/// The class of everybody who is not enrolled.
+inline constexpr Label kStranger = 0;
+
+/// The primary characteristic: names the person whose face was recognised in this image, or a stranger (6.2.1).
+class FaceClassifier final : public Classifier<PersonImage> {
+ public:
+  std::optional<Classification> classify(const PersonImage& input) override;
+  /// Not trained in the loop: describing a face is the trainer's work, and the dissertation left it out as well (6.2.4).
+  void train(Label, std::optional<Label>) override {}
+};
+
+struct PersonTrackerParameters {
+  ShirtParameters shirt{};
+  ContextParameters context{};
+  int faces_every = 2;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.section("shirt", self.shirt, "Shirts by their colours");
+    visit.section("context", self.context, "How a disturbed image lowers confidence");
+    visit.number("faces_every", self.faces_every, Range{1, 30}, "",
+                 "A face is looked for in every so-manieth image once a shirt is known.");
+  }
+};
+
+/// By which characteristic somebody was identified.
+enum class PersonSource : std::uint8_t { kNone, kFace, kShirt };
+std::string_view to_string(PersonSource source);
+
+/// Who is in the image.
+struct PersonSighting {
+  std::optional<Label> person;  ///< nothing: nobody is identified; kStranger: somebody who is not enrolled.
+  PersonSource source = PersonSource::kNone;
+  double confidence = 0.0;
+  Box box;  ///< of what identified him, in pixels of the image.
+};
+
+/// One person from image to image by face and shirt (6.2): Alg. 6.1 with the face as primary and the shirt as secondary characteristic, and the
+/// scheduling of 6.2.3. A face without its shirt relearns the shirt (6.2.4); a stranger's face overrides a shirt and teaches it nothing.
+///
+/// Threads: one.
+class PersonTracker {
+ public:
+  explicit PersonTracker(const PersonTrackerParameters& parameters = {});
+
+  /// Whether a face is to be looked for in the next image: always until a shirt is known, then in every other one (6.2.3).
+  [[nodiscard]] bool face_is_due() const;
+
+  /// \param input  of this image; its face is looked at only where face_is_due() said so.  \param context  how it was taken.
+  PersonSighting update(const PersonImage& input, const ImageContext& context = {});
+
+  void forget(Label person) { shirts_.forget(person); }
+  [[nodiscard]] const ShirtClassifier& shirts() const { return shirts_; }
+
+ private:
+  PersonTrackerParameters parameters_;
+  FaceClassifier faces_;
+  ShirtClassifier shirts_;
+  FeedbackClassifier<PersonImage> feedback_;
+  int since_face_ = 0;  // images since one was looked for
+};
+
+}  // namespace cgsr::person

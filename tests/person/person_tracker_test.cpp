@@ -1,0 +1,169 @@
+// Drawn people: a rectangle for a shirt, a box for a face that the test says is recognised. What is tested is who teaches whom.
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/person/tracking/person_tracker.h"
+
+namespace cgsr::person {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+using imaging::Rgb;
+constexpr Rgb kWall{0.6, 0.6, 0.6}, kRed{0.7, 0.15, 0.15}, kBlue{0.15, 0.2, 0.7};
+
+struct Picture {
+  std::vector<std::uint8_t> yuyv = std::vector<std::uint8_t>(std::size_t{2} * kWidth * kHeight);
+
+  explicit Picture(const Rgb& wall = kWall) { fill({0, 0, kWidth, kHeight}, wall); }
+  void fill(const Box& box, const Rgb& color) {
+    const auto yuv = imaging::yuv_of_rgb(color);
+    for (int y = static_cast<int>(box.y); y < static_cast<int>(box.y + box.height); ++y) {
+      for (int x = static_cast<int>(box.x); x < static_cast<int>(box.x + box.width); ++x) {
+        std::uint8_t* pixel = yuyv.data() + std::ptrdiff_t{2} * (y * kWidth + x);
+        pixel[0] = static_cast<std::uint8_t>(yuv.y + 0.5);
+        pixel[1] = static_cast<std::uint8_t>((x % 2 == 0 ? yuv.u : yuv.v) + 0.5);
+      }
+    }
+  }
+  [[nodiscard]] ImageView view() const { return {yuyv.data(), kWidth, kHeight, kWidth * 2, PixelFormat::kYuyv}; }
+};
+
+constexpr Box kFaceBox{140, 30, 40, 40};
+constexpr Box kShirtBox{120, 80, 80, 100};
+
+Picture standing(const Rgb& shirt) {
+  Picture picture;
+  picture.fill(kShirtBox, shirt);
+  return picture;
+}
+
+FaceSighting face_of(std::optional<Label> person, double confidence = 0.95) {
+  return {kFaceBox, {.label = person, .confidence = confidence}};
+}
+
+void learn(PersonTracker& tracker, Label person, const Rgb& shirt) {
+  const Picture picture = standing(shirt);
+  for (int image = 0; image < 10; ++image) tracker.update({picture.view(), face_of(person)});
+}
+
+// The story of Fig. 6.8: seen from the front, turned away, out of sight, back again.
+TEST(PersonTracker, FollowsTheShirtWhereTheFaceIsTurnedAwayAndNobodyWhereHeIsGone) {
+  PersonTracker tracker;
+  learn(tracker, 4, kRed);
+  const Picture picture = standing(kRed);
+  for (int image = 0; image < 20; ++image) {
+    const auto turned = tracker.update({picture.view()});
+    EXPECT_EQ(turned.person, 4);
+    EXPECT_EQ(turned.source, PersonSource::kShirt);
+    EXPECT_EQ(turned.box, kShirtBox);
+  }
+  const Picture empty;
+  for (int image = 0; image < 20; ++image) EXPECT_EQ(tracker.update({empty.view()}).person, std::nullopt);
+  while (!tracker.face_is_due()) tracker.update({empty.view()});
+  const auto back = tracker.update({picture.view(), face_of(4)});
+  EXPECT_EQ(back.person, 4);
+  EXPECT_EQ(back.source, PersonSource::kFace);
+  EXPECT_EQ(back.box, kFaceBox);
+}
+
+TEST(PersonTracker, IsBlindWithoutAFaceBeforeAShirtIsLearned) {
+  PersonTracker tracker;
+  const Picture picture = standing(kRed);
+  for (int image = 0; image < 9; ++image) {
+    EXPECT_TRUE(tracker.face_is_due());
+    tracker.update({picture.view(), face_of(4)});
+  }
+  EXPECT_EQ(tracker.update({picture.view()}).person, std::nullopt);
+  EXPECT_FALSE(tracker.shirts().knows(4));
+}
+
+// 6.2.3: the face runs in every other image once there is a shirt.
+TEST(PersonTracker, LooksForFacesInEveryOtherImageOnceAShirtIsKnown) {
+  PersonTracker tracker;
+  learn(tracker, 4, kRed);
+  const Picture picture = standing(kRed);
+  int due = 0;
+  for (int image = 0; image < 20; ++image) {
+    due += tracker.face_is_due() ? 1 : 0;
+    tracker.update({picture.view()});
+  }
+  EXPECT_EQ(due, 10);
+}
+
+// 6.2.4: two people exchange their shirts; by shirt alone they are mistaken, once a face is seen no longer.
+TEST(PersonTracker, RelearnsTheShirtBelowAFaceThatContradictsIt) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kBlue);
+  const Picture blue = standing(kBlue);
+  EXPECT_EQ(tracker.update({blue.view()}).person, 2) << "person 1 in the shirt of person 2, from behind";
+  while (!tracker.face_is_due()) tracker.update({blue.view()});
+  EXPECT_EQ(tracker.update({blue.view(), face_of(1)}).person, 1);
+  const auto behind = tracker.update({blue.view()});
+  EXPECT_EQ(behind.person, 1);
+  EXPECT_EQ(behind.source, PersonSource::kShirt);
+}
+
+// 6.2.4: the light changed so much that the shirt is not found; a face brings it back.
+TEST(PersonTracker, RelearnsAShirtThatIsNotFoundBelowItsFace) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture dim = standing({kRed.r / 2, kRed.g / 2, kRed.b / 2});
+  EXPECT_EQ(tracker.update({dim.view()}).person, std::nullopt);
+  while (!tracker.face_is_due()) tracker.update({dim.view()});
+  tracker.update({dim.view(), face_of(1)});
+  EXPECT_EQ(tracker.update({dim.view()}).person, 1);
+}
+
+// 6.4.3: a stranger in the same shirt is noticed by his face, which teaches the shirt nothing.
+TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  const auto stranger = tracker.update({picture.view(), face_of(std::nullopt)});
+  EXPECT_EQ(stranger.person, kStranger);
+  EXPECT_EQ(stranger.source, PersonSource::kFace);
+  EXPECT_TRUE(tracker.shirts().knows(1));
+}
+
+// 6.3.1: a shirt as large as the wall is none.
+TEST(PersonTracker, VetoesAShirtOfImplausibleSize) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture wall(kRed);
+  EXPECT_EQ(tracker.update({wall.view()}).person, std::nullopt);
+  Picture speck;
+  speck.fill({100, 100, 6, 6}, kRed);
+  EXPECT_EQ(tracker.update({speck.view()}).person, std::nullopt);
+}
+
+// 8.3: where it is dark a colour counts less, and a face that is less sure than a shirt in the light still decides.
+TEST(PersonTracker, TrustsAShirtLessInTheDark) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  EXPECT_EQ(tracker.update({picture.view(), face_of(std::nullopt, 0.6)}).person, 1);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  ImageContext dark;
+  dark.dark = 1.0;
+  EXPECT_EQ(tracker.update({picture.view(), face_of(std::nullopt, 0.6)}, dark).person, kStranger);
+}
+
+TEST(PersonTracker, ForgetsAPersonAndSurvivesAnEmptyImage) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  EXPECT_EQ(tracker.update({{}}).person, std::nullopt);
+  tracker.forget(1);
+  EXPECT_EQ(tracker.update({picture.view()}).person, std::nullopt);
+}
+
+}  // namespace
+}  // namespace cgsr::person
