@@ -76,11 +76,14 @@ Result<void> TrackRun::keep(const ImageLease& image, const color::TrackedObject&
 }
 
 Result<void> TrackRun::draw(const ImageLease& image, const color::TrackedObject& object,
-                            const std::optional<color::Light>& light) {
+                            const std::optional<color::Light>& plurality) {
   OverlayFacts facts;
   facts.image_number = frame_;
-  if (object.found) facts.box = object.box;
-  facts.light = light;
+  if (object.found) {
+    facts.box = object.box;
+    facts.light = object.exact_light;
+  }
+  facts.plurality = plurality;
   facts.divergence = object.divergence;
   if (session_.truth && frame_ < session_.truth->size()) facts.truth = (*session_.truth)[frame_];
   return session_.video->add(session_.overlay->draw(image.view(), facts));

@@ -48,7 +48,7 @@ class TrackRun {
  private:
   Result<void> keep(const ImageLease& image, const color::TrackedObject& object);
   Result<void> draw(const ImageLease& image, const color::TrackedObject& object,
-                    const std::optional<color::Light>& light);
+                    const std::optional<color::Light>& plurality);
   void note_change(bool found);
   Result<void> write_row(const color::TrackedObject& object);
 

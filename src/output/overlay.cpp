@@ -58,8 +58,8 @@ const cv::Mat& Overlay::draw(const ImageView& image, const OverlayFacts& facts) 
   if (facts.shade != nullptr) draw_shade(*facts.shade, top);
   if (facts.truth) draw_box(*facts.truth, kTruth, 1);
   if (facts.box) draw_box(*facts.box, kFound, 2);
-  lights_.push_back(facts.box ? facts.light : std::nullopt);
-  while (static_cast<int>(lights_.size()) * kColumn_px > picture_.cols) lights_.pop_front();
+  stripe_.push_back({facts.box ? facts.light : std::nullopt, facts.plurality});
+  while (static_cast<int>(stripe_.size()) * kColumn_px > picture_.cols) stripe_.pop_front();
   draw_panel(facts);
   return picture_;
 }
@@ -92,9 +92,13 @@ void Overlay::draw_panel(const OverlayFacts& facts) {
   const int top = static_cast<int>(height_px_ * zoom_);
   cv::rectangle(picture_, cv::Rect(0, top, picture_.cols, picture_.rows - top), kPanel, cv::FILLED);
   int column = 0;
-  for (const auto& light : lights_) {
-    const cv::Rect bar(column, top + 2, kColumn_px, kStripeHeight_px - 4);
+  const auto fill = [&](int row_px, const std::optional<color::Light>& light) {
+    const cv::Rect bar(column, top + row_px, kColumn_px, kStripeHeight_px / 2 - 2);
     cv::rectangle(picture_, bar & cv::Rect({0, 0}, picture_.size()), light ? bgr_of(*light) : kNothing, cv::FILLED);
+  };
+  for (const Column& seen : stripe_) {
+    fill(2, seen.light);
+    fill(kStripeHeight_px / 2, seen.plurality);
     column += kColumn_px;
   }
 

@@ -19,15 +19,16 @@ struct OverlayFacts {
   std::uint64_t image_number = 0;
   std::optional<Box> box;    ///< found object.
   std::optional<Box> truth;  ///< where it really is, when known.
-  std::optional<color::Light> light;
+  std::optional<color::Light> light;      ///< that the tracker follows; finer than the grid.
+  std::optional<color::Light> plurality;  ///< of the grid's lights over the last second.
   double divergence = 0.0;
   const render::ShadeMasks* shade =
       nullptr;                     ///< what may lie in shadow: tinted, and outlined where the surface itself does.
   std::vector<std::string> lines;  ///< free text below the image, one line each; at most five are drawn.
 };
 
-/// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3)
-/// and lines of text. Not for the frame path.
+/// Draws the picture that a person looks at: the image, on it the object's box, below it the stripe of estimated lights (Fig. 3.3:
+/// above the light that the tracker follows, below the plurality of the grid's) and lines of text. Not for the frame path.
 class Overlay {
  public:
   /// \param image_width_px, image_height_px  of every image to come; small ones are drawn larger.
@@ -46,7 +47,12 @@ class Overlay {
   int width_px_;
   int height_px_;
   double zoom_;
-  std::deque<std::optional<color::Light>> lights_;
+  struct Column {
+    std::optional<color::Light> light;
+    std::optional<color::Light> plurality;
+  };
+
+  std::deque<Column> stripe_;
   cv::Mat picture_;
 };
 

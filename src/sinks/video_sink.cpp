@@ -112,7 +112,8 @@ app::OverlayFacts VideoSink::facts_of(const ImageReport& report) {
   app::OverlayFacts facts;
   facts.image_number = report.record.image_sequence;
   if (object.found) facts.box = object.box;
-  facts.light = lights_.add(report.record.stamp, object.found ? std::optional(object.light) : std::nullopt);
+  if (object.found) facts.light = object.exact_light;
+  facts.plurality = lights_.add(report.record.stamp, object.found ? std::optional(object.light) : std::nullopt);
   facts.divergence = object.divergence;
   facts.shade = report.picture->masks.get();
   if (truth_ != nullptr) facts.truth = truth_->box;
