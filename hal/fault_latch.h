@@ -27,7 +27,7 @@ enum class DriveFault : std::uint8_t {
 };
 
 /// \return the fault in words, for people.
-constexpr std::string_view text(DriveFault fault) {
+constexpr std::string_view to_string(DriveFault fault) {
   constexpr std::string_view kWords[] = {"none",
                                          "waiting for whole sets of feedback",
                                          "the CAN controller is off the bus",

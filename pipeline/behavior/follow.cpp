@@ -44,7 +44,7 @@ double times_farther(const LearnedSize& reference, const Box& box, Cut cut) {
 
 }  // namespace
 
-std::string_view text(FollowState state) {
+std::string_view to_string(FollowState state) {
   switch (state) {
     case FollowState::kWaiting:
       return "waiting for a first sight";
@@ -60,7 +60,7 @@ std::string_view text(FollowState state) {
   return "unknown";
 }
 
-std::string_view text(FollowReason reason) {
+std::string_view to_string(FollowReason reason) {
   switch (reason) {
     case FollowReason::kSeen:
       return "seen";

@@ -45,8 +45,8 @@ enum class FollowReason : std::uint8_t {
   kBadInput,  ///< box, camera or image size make no sense; treated as not found.
 };
 
-std::string_view text(FollowState state);
-std::string_view text(FollowReason reason);
+std::string_view to_string(FollowState state);
+std::string_view to_string(FollowReason reason);
 
 /// What to do about one image. The goal is in the robot's frame.
 struct FollowDecision {

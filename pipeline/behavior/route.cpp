@@ -49,7 +49,7 @@ Result<std::vector<Place>> parse_places(std::string_view text) {
   return places;
 }
 
-std::string_view text(RouteState state) {
+std::string_view to_string(RouteState state) {
   switch (state) {
     case RouteState::kNowhere:
       return "pose not known, standing";

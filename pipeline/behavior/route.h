@@ -71,7 +71,7 @@ enum class RouteState : std::uint8_t {
   kArrived,  ///< at the last place.
 };
 
-std::string_view text(RouteState state);
+std::string_view to_string(RouteState state);
 
 /// What to do next. The goal is in the robot's frame.
 struct RouteDecision {

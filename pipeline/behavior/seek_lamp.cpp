@@ -38,7 +38,7 @@ bool moves(SeekState state) {
 
 }  // namespace
 
-std::string_view text(SeekState state) {
+std::string_view to_string(SeekState state) {
   switch (state) {
     case SeekState::kWaiting:
       return "waiting";
@@ -66,7 +66,7 @@ std::string_view text(SeekState state) {
   return "unknown";
 }
 
-std::string_view text(SeekReason reason) {
+std::string_view to_string(SeekReason reason) {
   switch (reason) {
     case SeekReason::kBegun:
       return "begun";

@@ -136,7 +136,7 @@ enum class SeekState : std::uint8_t {
   kAmbient,      ///< no shadow was found: stands and tracks without a mask.
   kStopped,      ///< a fault ended it; stands.
 };
-std::string_view text(SeekState state);
+std::string_view to_string(SeekState state);
 
 enum class SeekReason : std::uint8_t {
   kBegun,
@@ -163,7 +163,7 @@ enum class SeekReason : std::uint8_t {
   kSwitchFault,
   kNoCheck,
 };
-std::string_view text(SeekReason reason);
+std::string_view to_string(SeekReason reason);
 
 /// What to do next. The goal is in the robot's frame.
 struct SeekDecision {

@@ -2,7 +2,7 @@
 
 namespace cgsr {
 
-std::string_view text(StopCause cause) {
+std::string_view to_string(StopCause cause) {
   switch (cause) {
     case StopCause::kNone:
       return "nothing stops it";

@@ -31,7 +31,7 @@ enum class StopCause : std::uint8_t {
 };
 
 /// \return the cause in words, for people.
-std::string_view text(StopCause cause);
+std::string_view to_string(StopCause cause);
 
 /// \return whether the cause disarms the robot at once; the others only hold it.
 bool latches(StopCause cause);
@@ -75,7 +75,7 @@ struct MotionStatus {
     visit.number("commanded_mps", self.commanded.forward_mps, {4}, "m/s", "forward speed that the base was commanded");
     visit.number("commanded_radps", self.commanded.left_radps, {4}, "rad/s", "turn rate that the base was commanded");
     visit.flag("armed", self.armed, "the robot is armed");
-    visit.text("stop_cause", text(self.cause), "why zero is commanded");
+    visit.text("stop_cause", to_string(self.cause), "why zero is commanded");
   }
 };
 static_assert(std::is_trivially_copyable_v<MotionStatus>);

@@ -4,7 +4,7 @@
 
 namespace cgsr::runtime {
 
-std::string_view text(StageOutcome outcome) {
+std::string_view to_string(StageOutcome outcome) {
   switch (outcome) {
     case StageOutcome::kNotCalled:
       return "not called";

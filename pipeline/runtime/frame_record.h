@@ -18,7 +18,7 @@ enum class StageOutcome : std::uint8_t {
   kRan,
   kFaulted,  ///< it, or a library below it, threw.
 };
-std::string_view text(StageOutcome outcome);
+std::string_view to_string(StageOutcome outcome);
 
 /// What one stage did in one frame.
 struct StageRecord {

@@ -42,18 +42,18 @@ Decision FollowTask::decide(const FrameResult& frame, const ImageView& image, Du
   const behavior::FollowDecision follow = follow_.decide(
       {object.found, object.box, frame.objects.age, image.width_px, image.height_px, camera_.fx_px, camera_.cx_px},
       elapsed);
-  return {follow.goal, follow.halt, behavior::text(follow.state), behavior::text(follow.reason), {}};
+  return {follow.goal, follow.halt, behavior::to_string(follow.state), behavior::to_string(follow.reason), {}};
 }
 
 Decision RouteTask::decide(const FrameResult& frame, const ImageView& /*image*/, Duration elapsed) {
   const behavior::RouteDecision route = route_.decide(pose_to_drive_by(frame.pose), elapsed);
-  return {route.goal, route.halt, behavior::text(route.state), {}, {}};
+  return {route.goal, route.halt, behavior::to_string(route.state), {}, {}};
 }
 
 Decision LampTask::decide(const FrameResult& frame, const ImageView& /*image*/, Duration elapsed) {
   const behavior::SeekDecision seek =
       seek_.decide(pose_to_drive_by(frame.pose), lamp_belief(frame.lamp, frame.shade), elapsed);
-  Decision decision{seek.goal, seek.halt, behavior::text(seek.state), behavior::text(seek.reason), {}};
+  Decision decision{seek.goal, seek.halt, behavior::to_string(seek.state), behavior::to_string(seek.reason), {}};
   decision.requests.track = seek_.tracks();
   decision.requests.check = seek.make_sure;
   return decision;

@@ -25,12 +25,12 @@ class BaseTest {
     began_ = clock_.now();
     const auto heard = cycle(options_.listen_s, std::nullopt);
     if (!heard) {
-      return fail(fmt::format("nothing complete was heard of the base: {}", hal::text(drive_.fault())));
+      return fail(fmt::format("nothing complete was heard of the base: {}", hal::to_string(drive_.fault())));
     }
     print_counters();
     if (!options_.arm) return {};
     if (drive_.fault() != hal::DriveFault::kNone) {
-      return fail(fmt::format("the base cannot move: {}", hal::text(drive_.fault())));
+      return fail(fmt::format("the base cannot move: {}", hal::to_string(drive_.fault())));
     }
     if (!observer_.confirm()) {
       observer_.print("not confirmed: the base was not moved");
@@ -70,8 +70,8 @@ class BaseTest {
     }
     constexpr const char* kModes[] = {"disabled", "tractor", "balance", "power down"};
     const auto mode = static_cast<std::size_t>(report.power.mode);
-    observer_.print(line +
-                    fmt::format("mode {}  fault: {}", mode < 4 ? kModes[mode] : "unknown", hal::text(drive_.fault())));
+    observer_.print(
+        line + fmt::format("mode {}  fault: {}", mode < 4 ? kModes[mode] : "unknown", hal::to_string(drive_.fault())));
   }
 
   void print_counters() {
@@ -85,7 +85,7 @@ class BaseTest {
 
   Result<void> move() {
     if (const auto armed = drive_.rearm(clock_.now()); !armed) {
-      return fail(fmt::format("the base cannot be armed: {}", hal::text(armed.error())));
+      return fail(fmt::format("the base cannot be armed: {}", hal::to_string(armed.error())));
     }
     const auto forward = movement({options_.forward_mps, 0.0});
     if (!forward) return tl::unexpected(forward.error());
@@ -105,7 +105,7 @@ class BaseTest {
     const auto during = cycle(options_.move_s, twist);
     const auto after = cycle(1.0, hal::Twist{});
     if (drive_.fault() != hal::DriveFault::kNone) {
-      return fail(fmt::format("the base stopped: {}", hal::text(drive_.fault())));
+      return fail(fmt::format("the base stopped: {}", hal::to_string(drive_.fault())));
     }
     if (observer_.stop_requested()) return fail("ended by a signal; the base stands");
     if (!before || !during || !after) return fail("the base fell silent");

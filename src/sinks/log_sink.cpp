@@ -91,7 +91,7 @@ Result<void> LogSink::on_control_cycle(const MotionStatus& status) {
   const bool first = !cycled_;
   if (!first && status.armed != motion_.armed) spdlog::info("motion: {}", status.armed ? "armed" : "disarmed");
   if (first || status.cause != motion_.cause) {
-    spdlog::info("motion: {}", status.cause == StopCause::kNone ? "free to move" : text(status.cause));
+    spdlog::info("motion: {}", status.cause == StopCause::kNone ? "free to move" : to_string(status.cause));
   }
   cycled_ = true;
   motion_ = status;

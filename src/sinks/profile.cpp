@@ -85,14 +85,14 @@ Json Profile::json() const {
   json["motion"] = {{"control_cycles", cycles_},
                     {"late_cycles", late_cycles_},
                     {"armed", last_motion_.armed},
-                    {"stop_cause", text(last_motion_.cause)},
-                    {"latched", text(last_motion_.latched)},
-                    {"drive_fault", hal::text(last_motion_.drive_fault)},
+                    {"stop_cause", to_string(last_motion_.cause)},
+                    {"latched", to_string(last_motion_.latched)},
+                    {"drive_fault", hal::to_string(last_motion_.drive_fault)},
                     {"commanded_mps", last_motion_.commanded.forward_mps},
                     {"commanded_radps", last_motion_.commanded.left_radps}};
   json["stop_causes"] = Json::object();
   for (std::size_t i = 0; i <= static_cast<std::size_t>(StopCause::kDisarmed); ++i) {
-    if (causes_[i] > 0) json["stop_causes"][std::string(text(static_cast<StopCause>(i)))] = causes_[i];
+    if (causes_[i] > 0) json["stop_causes"][std::string(to_string(static_cast<StopCause>(i)))] = causes_[i];
   }
   return json;
 }

@@ -32,14 +32,14 @@ void add_motion(const RunStatistics& run, Summary& summary) {
                             {"fastest_radps", run.fastest_radps},
                             {"last_command", {last.commanded.forward_mps, last.commanded.left_radps}},
                             {"odometry", {last.odometry.x_m, last.odometry.y_m, last.odometry.heading_rad}},
-                            {"stop_cause", text(last.cause)},
-                            {"latched", text(last.latched)}};
+                            {"stop_cause", to_string(last.cause)},
+                            {"latched", to_string(last.latched)}};
   summary.text += fmt::format(
       "motion: {} control cycles, {} of them in motion, fastest {:.2f} m/s and {:.2f} rad/s, odometry x {:.2f} m y "
       "{:.2f} m heading {:.2f} rad\nlast command {:+.2f} m/s {:+.2f} rad/s ({})\n\n",
       run.control_cycles, run.cycles_in_motion, run.fastest_mps, run.fastest_radps, last.odometry.x_m,
       last.odometry.y_m, last.odometry.heading_rad, last.commanded.forward_mps, last.commanded.left_radps,
-      text(last.cause));
+      to_string(last.cause));
 }
 
 void add_task(const RunStatistics& run, Summary& summary) {

@@ -123,10 +123,10 @@ Result<void> TraceSink::on_control_cycle(const MotionStatus& status) {
   auto added = file_.slice(kMotion, "control cycle", status.stamp, Duration::zero(),
                            {{"forward_mps", status.commanded.forward_mps},
                             {"left_radps", status.commanded.left_radps},
-                            {"stop_cause", text(status.cause)}});
+                            {"stop_cause", to_string(status.cause)}});
   if (added && status.cause != std::exchange(cause_, status.cause)) {
-    added =
-        file_.instant(kMotion, status.cause == StopCause::kNone ? "free to move" : text(status.cause), status.stamp);
+    added = file_.instant(kMotion, status.cause == StopCause::kNone ? "free to move" : to_string(status.cause),
+                          status.stamp);
   }
   if (!added || status.goal_stamp <= last_goal_) return added;
   last_goal_ = status.goal_stamp;

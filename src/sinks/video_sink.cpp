@@ -15,7 +15,7 @@ std::string task_line(const ImageReport& report) {
   const MotionStatus& motion = report.motion;
   return fmt::format("{}   commanded {:+.2f} m/s {:+.2f} rad/s   {}", report.frame.decision.value.state,
                      motion.commanded.forward_mps, motion.commanded.left_radps,
-                     motion.cause == StopCause::kNone ? "free to move" : text(motion.cause));
+                     motion.cause == StopCause::kNone ? "free to move" : to_string(motion.cause));
 }
 
 std::string pose_line(const stages::PoseEstimate& pose) {

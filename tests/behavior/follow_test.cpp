@@ -263,8 +263,9 @@ TEST(FollowFault, TimeRunsBack) {
 
 TEST(Follow, EveryStateAndReasonHasItsOwnWords) {
   std::set<std::string_view> words;
-  for (int i = 0; i <= static_cast<int>(FollowState::kLost); ++i) words.insert(text(static_cast<FollowState>(i)));
-  for (int i = 0; i <= static_cast<int>(FollowReason::kBadInput); ++i) words.insert(text(static_cast<FollowReason>(i)));
+  for (int i = 0; i <= static_cast<int>(FollowState::kLost); ++i) words.insert(to_string(static_cast<FollowState>(i)));
+  for (int i = 0; i <= static_cast<int>(FollowReason::kBadInput); ++i)
+    words.insert(to_string(static_cast<FollowReason>(i)));
   EXPECT_EQ(words.size(), 10u);
   EXPECT_EQ(words.count("unknown"), 0u);
 }

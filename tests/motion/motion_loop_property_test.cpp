@@ -159,7 +159,7 @@ Tally run(std::uint64_t seed, int steps) {
     told.feedback_age = rig.now - measured;
 
     const bool may_move = shadow.may_move(told, rig.now);
-    EXPECT_EQ(status.armed, shadow.armed) << "seed " << seed << " step " << step << ": " << text(status.cause);
+    EXPECT_EQ(status.armed, shadow.armed) << "seed " << seed << " step " << step << ": " << to_string(status.cause);
     EXPECT_EQ(status.cause == StopCause::kNone, may_move) << "seed " << seed << " step " << step;
     if (!may_move) {
       EXPECT_TRUE(is_zero(status.commanded)) << "seed " << seed << " step " << step;

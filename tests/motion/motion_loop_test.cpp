@@ -200,7 +200,7 @@ TEST(MotionLoop, StopClosesTheBaseAndMayBeCalledTwice) {
 TEST(MotionLoop, EveryCauseHasItsOwnWords) {
   std::set<std::string_view> words;
   for (int cause = 0; cause <= static_cast<int>(StopCause::kDisarmed); ++cause) {
-    words.insert(text(static_cast<StopCause>(cause)));
+    words.insert(to_string(static_cast<StopCause>(cause)));
   }
   EXPECT_EQ(words.size(), static_cast<std::size_t>(StopCause::kDisarmed) + 1);
   EXPECT_EQ(words.count("unknown"), 0u);

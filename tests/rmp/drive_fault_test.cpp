@@ -269,8 +269,8 @@ TEST(RmpDriveFault, DisplacementsThatOnlyJumpAreLostFeedback) {
 
 TEST(RmpDriveFault, EveryFaultHasItsWords) {
   for (int i = 0; i <= static_cast<int>(DriveFault::kMotorsOff); ++i) {
-    EXPECT_FALSE(text(static_cast<DriveFault>(i)).empty());
-    for (int j = 0; j < i; ++j) EXPECT_NE(text(static_cast<DriveFault>(i)), text(static_cast<DriveFault>(j)));
+    EXPECT_FALSE(to_string(static_cast<DriveFault>(i)).empty());
+    for (int j = 0; j < i; ++j) EXPECT_NE(to_string(static_cast<DriveFault>(i)), to_string(static_cast<DriveFault>(j)));
   }
 }
 

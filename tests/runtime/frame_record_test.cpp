@@ -29,7 +29,7 @@ TEST(FrameRecord, EveryOutcomeHasItsWord) {
   std::set<std::string_view> words;
   for (const auto outcome : {StageOutcome::kNotCalled, StageOutcome::kNotDue, StageOutcome::kSkipped,
                              StageOutcome::kRan, StageOutcome::kFaulted}) {
-    words.insert(text(outcome));
+    words.insert(to_string(outcome));
   }
   EXPECT_EQ(words.size(), 5U);
   EXPECT_EQ(words.count("unknown"), 0U);

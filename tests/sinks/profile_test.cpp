@@ -88,8 +88,8 @@ TEST(Profile, MeasuresFromTheExposureToTheFirstCommand) {
   const auto json = profile.json();
   EXPECT_EQ(json["exposure_to_command"]["images"], 10);
   EXPECT_NEAR(json["exposure_to_command"]["worst_us"].get<double>(), 40000.0, 1.0);
-  EXPECT_EQ(json["stop_causes"][std::string(text(StopCause::kNone))], 30);
-  EXPECT_EQ(json["stop_causes"][std::string(text(StopCause::kGoalStale))], 1);
+  EXPECT_EQ(json["stop_causes"][std::string(to_string(StopCause::kNone))], 30);
+  EXPECT_EQ(json["stop_causes"][std::string(to_string(StopCause::kGoalStale))], 1);
 }
 
 TEST(ProfileText, ShowsStagesHistogramAndCausesAndTakesAnyObject) {

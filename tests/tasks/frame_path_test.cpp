@@ -92,14 +92,14 @@ TEST_F(FramePath, AnImageGoesInAWheelCommandComesOut) {
 
 TEST_F(FramePath, TheRobotStopsWhenTheObjectIsGoneAndFollowsAgainWhenItIsBack) {
   for (std::uint64_t i = 0; i < 120; ++i) cycle(i);
-  ASSERT_EQ(frame_.decision.value.state, text(behavior::FollowState::kFollowing));
+  ASSERT_EQ(frame_.decision.value.state, to_string(behavior::FollowState::kFollowing));
   for (std::uint64_t i = 120; i < 145; ++i) cycle(i, true);
   EXPECT_FALSE(frame_.objects.value.first().object.found);
-  EXPECT_EQ(frame_.decision.value.state, text(behavior::FollowState::kStanding));
+  EXPECT_EQ(frame_.decision.value.state, to_string(behavior::FollowState::kStanding));
   EXPECT_EQ(status_.commanded.forward_mps, 0.0);
   cycle(145);
   cycle(146);
-  EXPECT_EQ(frame_.decision.value.state, text(behavior::FollowState::kFollowing));
+  EXPECT_EQ(frame_.decision.value.state, to_string(behavior::FollowState::kFollowing));
 }
 
 TEST_F(FramePath, WithoutImagesTheDeadManStopsTheWheels) {

@@ -74,7 +74,7 @@ class Judge {
     ++images_;
     const bool seen = lamp.has_board && reason_of(lamp).empty();
     if (seen && lamp.known) keep("(a) the probes throw shadows, the lamp is found", image, report, 0);
-    const bool tracks = frame.decision.value.state == behavior::text(behavior::SeekState::kTracking);
+    const bool tracks = frame.decision.value.state == behavior::to_string(behavior::SeekState::kTracking);
     if (!tracks || !truth) return;
     if (masks != nullptr) keep("(b) what may lie in shadow", image, report, 1);
 
