@@ -2,6 +2,7 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/render/depth_raster.h"
+#include "pipeline/world/clean.h"
 #include "pipeline/world/compact.h"
 #include "pipeline/world/index.h"
 #include "pipeline/world/load.h"
@@ -20,6 +22,7 @@
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
+#include "src/input/ros_map.h"
 #include "src/output/map_view.h"
 #include "src/output/picture.h"
 
@@ -30,6 +33,8 @@ struct Options {
   std::string file;
   std::string up = "format";
   world::LoadOptions load;
+  std::optional<double> wall_height_m;  ///< of a ROS map.
+  world::WallParameters walls;
   bool json = false;
   std::string output;
   std::string camera;
@@ -139,9 +144,31 @@ int run_info(const Options& options) {
   return kSuccess;
 }
 
+bool is_ros_map(const std::string& file) {
+  const auto ending = std::filesystem::path(file).extension();
+  return ending == ".yaml" || ending == ".yml";
+}
+
+/// Walls of the given height along the borders of a ROS map's occupied cells, and how well they keep to them.
+Result<world::Map> walls_of_ros_map(const Options& options) {
+  if (!options.wall_height_m) {
+    return fail(fmt::format("{}: a ROS map says nothing of heights: expected --wall-height METRES", options.file));
+  }
+  const auto grid = read_ros_map(options.file);
+  if (!grid) return tl::unexpected(grid.error());
+  const auto plan = world::walls_of(*grid, options.walls);
+  if (!plan) return fail(fmt::format("{}: {}", options.file, plan.error().message));
+  fmt::print(
+      "walls     {} of {:.1f} m in all; {:.1f} % of {} border cells lie at a wall, {:.1f} % of the walls at an "
+      "occupied cell (within {:.3f} m)\n",
+      plan->walls.size(), plan->length_m, 100.0 * plan->covered, plan->border_cells, 100.0 * plan->supported,
+      options.walls.tolerance_m + grid->cell_m);
+  return world::clean(world::soup_of(*plan, *options.wall_height_m), options.load.weld_m, options.load.lies_on_m);
+}
+
 int run_import(const Options& options) {
   if (const auto claimed = claim_output(options, compact_map()); !claimed) return report(claimed.error());
-  const auto map = load(options);
+  const auto map = is_ros_map(options.file) ? walls_of_ros_map(options) : load(options);
   if (!map) return report(map.error());
   if (const auto written = world::write_compact(*map, options.output); !written) return report(written.error());
   const auto back = world::load_map(options.output);
@@ -214,6 +241,20 @@ void add_map_command(CLI::App& app, int& exit_code) {
       command->add_subcommand("import", "write the cleaned-up map with its edges as a compact, checked copy");
   add_load_options(*importing, *options);
   importing->add_option("--output", options->output, "the copy: NAME.cgsrmap")->required();
+  importing
+      ->add_option("--wall-height", options->wall_height_m,
+                   "of a ROS map (map.yaml): how high its walls are, in metres")
+      ->check(in_range(0.1, 20.0));
+  importing
+      ->add_option("--wall-tolerance", options->walls.tolerance_m,
+                   "of a ROS map: how far a straight wall may leave the border of the occupied cells, in metres")
+      ->check(in_range(1e-3, 1.0))
+      ->capture_default_str();
+  importing
+      ->add_option("--min-wall", options->walls.min_length_m,
+                   "of a ROS map: shorter groups of occupied cells are left out, in metres")
+      ->check(in_range(0.0, 10.0))
+      ->capture_default_str();
   add_force_option(*importing, options->force);
   importing->callback([options, &exit_code] { exit_code = run_import(*options); });
 

@@ -1,13 +1,10 @@
 #include "src/input/camera_file.h"
 
-#include <yaml-cpp/yaml.h>
-
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
-#include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,6 +12,7 @@
 
 #include "platform/parameters.h"
 #include "src/input/small_file.h"
+#include "src/input/yaml_reader.h"
 
 namespace cgsr::app {
 namespace {
@@ -25,87 +23,15 @@ constexpr double kMostRatio = 2.0;           // of both focal lengths: pixels ar
 constexpr double kWidestHalfTangent = 20.0;  // 174 degrees across
 constexpr double kReturns_px = 1e-3;         // a pixel's direction shows at the pixel again to so much
 
-/// Finds what it looks for in a YAML mapping and says where something is wrong.
-class YamlReader {
- public:
-  YamlReader(const YAML::Node& root, std::string_view name) : root_(root), name_(name) {}
-
-  [[nodiscard]] Error wrong(const YAML::Node& at, const std::string& words) const {
-    return {fmt::format("{}:{}: {}", name_, at.Mark().line + 1, words)};
+Result<int> image_side(const YamlReader& yaml, std::string_view key) {
+  const auto value = yaml.number_at(key, "the size of the images in pixels");
+  if (!value) return tl::unexpected(value.error());
+  if (*value != std::floor(*value) || *value < 16.0 || *value > 8192.0) {
+    return tl::unexpected(yaml.wrong(yaml.root()[std::string(key)],
+                                     fmt::format("{} is {}: expected a whole number, 16..8192 px", key, *value)));
   }
-  [[nodiscard]] Error missing(std::string_view key, std::string_view expected) const {
-    return {fmt::format("{}: there is no '{}': expected {}", name_, key, expected)};
-  }
-
-  [[nodiscard]] Result<void> refuse_doubled_keys() const {
-    std::set<std::string> seen;
-    for (const auto& entry : root_) {
-      if (!entry.first.IsScalar()) return tl::unexpected(wrong(entry.first, "a key is no word"));
-      if (!seen.insert(entry.first.Scalar()).second) {
-        return tl::unexpected(wrong(entry.first, fmt::format("'{}' is there a second time", entry.first.Scalar())));
-      }
-    }
-    return {};
-  }
-
-  [[nodiscard]] Result<double> number(const YAML::Node& node, std::string_view key) const {
-    const std::string text = node.IsScalar() ? node.Scalar() : "";
-    double value = 0.0;
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-    if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-      return tl::unexpected(wrong(node, fmt::format("{} holds '{}': expected a finite number", key, shown(node))));
-    }
-    return value;
-  }
-
-  [[nodiscard]] Result<int> side(std::string_view key) const {
-    const YAML::Node node = root_[std::string(key)];
-    if (!node) return tl::unexpected(missing(key, "the size of the images in pixels"));
-    const auto value = number(node, key);
-    if (!value) return tl::unexpected(value.error());
-    if (*value != std::floor(*value) || *value < 16.0 || *value > 8192.0) {
-      return tl::unexpected(wrong(node, fmt::format("{} is {}: expected a whole number, 16..8192 px", key, *value)));
-    }
-    return static_cast<int>(*value);
-  }
-
-  /// The numbers of a matrix as ROS writes it: rows, cols, data.
-  [[nodiscard]] Result<std::vector<double>> matrix(std::string_view key, std::string_view expected) const {
-    const YAML::Node node = root_[std::string(key)];
-    if (!node) return tl::unexpected(missing(key, expected));
-    if (!node.IsMap() || !node["rows"] || !node["cols"] || !node["data"] || !node["data"].IsSequence()) {
-      return tl::unexpected(wrong(node, fmt::format("{} is not a matrix: expected rows, cols and data: [...]", key)));
-    }
-    const auto rows = number(node["rows"], fmt::format("{}.rows", key));
-    if (!rows) return tl::unexpected(rows.error());
-    const auto cols = number(node["cols"], fmt::format("{}.cols", key));
-    if (!cols) return tl::unexpected(cols.error());
-    std::vector<double> values;
-    values.reserve(node["data"].size());
-    for (const YAML::Node& entry : node["data"]) {
-      const auto value = number(entry, key);
-      if (!value) return tl::unexpected(value.error());
-      values.push_back(*value);
-    }
-    if (*rows * *cols != static_cast<double>(values.size())) {
-      return tl::unexpected(wrong(node["data"], fmt::format("{} holds {} numbers: expected rows x cols = {} x {}", key,
-                                                            values.size(), *rows, *cols)));
-    }
-    return values;
-  }
-
-  [[nodiscard]] const YAML::Node& root() const { return root_; }
-
-  static std::string shown(const YAML::Node& node) {
-    if (!node.IsScalar()) return node.IsSequence() ? "[...]" : node.IsMap() ? "{...}" : "";
-    return node.Scalar().substr(0, 60);
-  }
-
- private:
-  const YAML::Node& root_;
-  std::string_view name_;
-};
+  return static_cast<int>(*value);
+}
 
 Result<void> read_pinhole(const YamlReader& yaml, geometry::Camera& camera) {
   constexpr std::string_view kExpected = "3 x 3: fx 0 cx 0 fy cy 0 0 1";
@@ -268,9 +194,9 @@ Result<geometry::Camera> parse_camera(const std::string& text, std::string_view 
     const YamlReader yaml(root, name);
     if (auto once = yaml.refuse_doubled_keys(); !once) return tl::unexpected(once.error());
     geometry::Camera camera;
-    const auto width = yaml.side("image_width");
+    const auto width = image_side(yaml, "image_width");
     if (!width) return tl::unexpected(width.error());
-    const auto height = yaml.side("image_height");
+    const auto height = image_side(yaml, "image_height");
     if (!height) return tl::unexpected(height.error());
     camera.width_px = *width;
     camera.height_px = *height;

@@ -88,6 +88,65 @@ TEST_F(MapCommand, RenderAndOverlayDrawWhatTheCameraSees) {
   EXPECT_NEAR(brightest, 119.5 - 60.0 * (1.0 - 0.1 * 0.04), 1.5);
 }
 
+/// A wall of 2 m, a cell thick, as map_server stores it.
+class RosMap : public MapCommand {
+ protected:
+  RosMap() {
+    cv::Mat image(30, 60, CV_8U, cv::Scalar(254));
+    image(cv::Rect(10, 10, 40, 1)) = 0;
+    cv::imwrite(at("floor.pgm"), image);
+  }
+
+  void write_yaml(const std::string& text) { std::ofstream(scratch_ / "floor.yaml") << text; }
+  Outcome import() {
+    return run_cgsr(
+        {"map", "import", at("floor.yaml"), "--wall-height", "2", "--output", at("floor.cgsrmap"), "--force"});
+  }
+};
+
+TEST_F(RosMap, OccupiedCellsBecomeWalls) {
+  write_yaml(
+      "image: floor.pgm\nresolution: 0.05\norigin: [1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: "
+      "0.2\n");
+  const auto done = import();
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("walls     1 of 2.0 m in all; 100.0 % of 40 border cells"));
+  const auto json = nlohmann::json::parse(run_cgsr({"map", "info", at("floor.cgsrmap"), "--json"}).output);
+  EXPECT_EQ(json["surfaces"], 1);
+  EXPECT_EQ(json["edges"], 4);
+
+  const auto no_height = run_cgsr({"map", "import", at("floor.yaml"), "--output", at("floor.cgsrmap")});
+  EXPECT_EQ(no_height.exit_code, 1);
+  EXPECT_THAT(no_height.errors, HasSubstr("expected --wall-height METRES"));
+}
+
+TEST_F(RosMap, ANegatedImageIsOccupiedWhereItIsLight) {
+  write_yaml("image: floor.pgm\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 1\noccupied_thresh: 0.65\n");
+  const auto done = import();
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("% of the walls at an occupied cell"));
+}
+
+TEST_F(RosMap, WhatIsWrongIsNamedWithItsLine) {
+  const std::string rest = "origin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\n";
+  write_yaml("image: floor.pgm\n" + rest);
+  EXPECT_THAT(import().errors,
+              HasSubstr("floor.yaml: there is no 'resolution': expected the side of a cell in metres"));
+  write_yaml("image: floor.pgm\nresolution: 50\n" + rest);
+  EXPECT_THAT(import().errors, HasSubstr("floor.yaml:2: resolution is 50: expected 0.001..1 m"));
+  write_yaml("image: none.pgm\nresolution: 0.05\n" + rest);
+  EXPECT_THAT(import().errors, HasSubstr("none.pgm: no image that can be read"));
+  write_yaml("image: ../../etc/passwd\nresolution: 0.05\n" + rest);
+  EXPECT_THAT(import().errors, HasSubstr("lies outside of the map's folder"));
+  write_yaml("image: floor.pgm\nresolution: 0.05\nmode: raw\n" + rest);
+  EXPECT_THAT(import().errors, HasSubstr("floor.yaml:3: mode is 'raw': expected trinary"));
+  write_yaml("image: floor.pgm\nresolution: 0.05\norigin: [0, 0]\nnegate: 0\noccupied_thresh: 0.65\n");
+  EXPECT_THAT(import().errors, HasSubstr("floor.yaml:3: origin holds '[...]': expected [x, y, yaw]"));
+  write_yaml("[1, 2");
+  EXPECT_THAT(import().errors, HasSubstr("floor.yaml:"));
+  EXPECT_EQ(import().exit_code, 1);
+}
+
 TEST_F(MapCommand, WhatIsWrongIsNamed) {
   EXPECT_THAT(run_cgsr({"map", "info", at("none.obj")}).errors, HasSubstr("none.obj: No such file"));
   EXPECT_THAT(run_cgsr({"map", "info", at("camera.yaml")}).errors, HasSubstr("no kind of map that is read"));
