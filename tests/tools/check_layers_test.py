@@ -1,4 +1,5 @@
 """tools/check_layers.py lets the project pass and catches each kind of wrong arrow."""
+import importlib.util
 import pathlib
 import subprocess
 import sys
@@ -7,6 +8,10 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CHECK = ROOT / "tools" / "check_layers.py"
+
+spec = importlib.util.spec_from_file_location("check_layers", CHECK)
+check_layers = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(check_layers)
 
 
 def run(root):
@@ -62,6 +67,17 @@ class CheckLayers(unittest.TestCase):
 
     def test_a_path_that_does_not_start_at_the_root(self):
         self.assert_caught({"platform/a.h": '#include "b.h"\n', "platform/b.h": ""}, "not a path from the root")
+
+    def test_a_sink_that_knows_the_boot(self):
+        self.assert_caught({"src/boot/a.h": "", "src/sinks/b.h": '#include "src/boot/a.h"\n'}, "src/sinks may not include src/boot/a.h")
+
+    def test_the_table_itself_has_no_circle(self):
+        rows = {**check_layers.ALLOWED, **check_layers.PROGRAM}
+        open_rooms = set(rows)
+        while open_rooms:
+            free = {room for room in open_rooms if not open_rooms & (set(rows[room]) - {room})}
+            self.assertTrue(free, f"a circle among {sorted(open_rooms)}")
+            open_rooms -= free
 
     def test_a_file_in_no_room(self):
         self.assert_caught({"extras/a.h": ""}, "no known room")
