@@ -14,9 +14,10 @@ function(cgsr_kernels)
 endfunction()
 
 # cgsr_test(NAME sources… DEPENDS targets… [LABEL …]): one test program per folder, each TEST() a ctest of its own. LABEL: unit (default), sim,
-# app, or slow, which only tools/test --long runs.
+# app, or slow, which only tools/test --long runs. UNOPTIMIZED: the test itself computes little, so compiling it quickly counts for more; what it
+# tests is optimised all the same.
 function(cgsr_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;LABEL" "DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "UNOPTIMIZED" "TIMEOUT;LABEL" "DEPENDS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -25,6 +26,10 @@ function(cgsr_test name)
   endif()
   add_executable(test_${name} ${ARG_UNPARSED_ARGUMENTS})
   target_link_libraries(test_${name} PRIVATE ${ARG_DEPENDS} GTest::gmock GTest::gtest_main)
+  if(ARG_UNOPTIMIZED)
+    target_compile_options(test_${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O0>)
+    set_target_properties(test_${name} PROPERTIES CGSR_UNOPTIMIZED ON)
+  endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}: DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120
                        PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
 endfunction()
