@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/program.h"
+#include "tests/support/scratch_cache.h"
 
 namespace cgsr::app::testing {
 namespace {
@@ -20,11 +21,10 @@ TEST_P(Decisions, AreThoseOfTheStoredReference) {
   const auto reference = nlohmann::json::parse(file).at(GetParam());
   const ScratchFolder scratch;
   const std::string summary = scratch / "run.json";
-  setenv("XDG_CACHE_HOME", scratch.path().c_str(), 1);  // the shipped robots keep rendered images
+  const test::ScratchCache cache;  // the shipped robots keep rendered images
   const auto outcome =
       run_cgsr({"run", "--config", CGSR_SOURCE_DIR "/config/robots/" + GetParam() + ".toml", "--duration",
                 reference.at("duration_s").dump(), "--log-level", "warning", "--json", summary});
-  unsetenv("XDG_CACHE_HOME");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const auto run = nlohmann::json::parse(read_text(summary));
   EXPECT_EQ(run.at("inputs_sha256"), reference.at("inputs_sha256"))

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/program.h"
+#include "tests/support/scratch_cache.h"
 
 namespace cgsr::app::testing {
 namespace {
@@ -76,14 +77,13 @@ TEST_F(RunSimulated, TheSameBytesOnOneThreadAndOnTwoAndOthersForAnotherSeed) {
 
 // Keeping images spares the second run their drawing, and changes nothing else.
 TEST_F(RunSimulated, ARepeatedRunOutOfTheCacheIsTheSame) {
-  const std::string folder = scratch_ / "cache";
-  setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+  const test::ScratchCache cache;
+  const std::string folder = cache.path();
   const auto drawn = run(small_robot(), "3");
   EXPECT_FALSE(std::filesystem::exists(folder)) << "kept although nobody asked for it";
   const auto fresh = run(small_robot({{"sim.cache", "true"}}), "3");
   const auto images = std::distance(std::filesystem::recursive_directory_iterator(folder), {});
   const auto repeated = run(small_robot({{"sim.cache", "true"}}), "3");
-  unsetenv("XDG_CACHE_HOME");
   EXPECT_GT(images, 80);
   for (const char* const what : {"inputs_sha256", "outputs_sha256", "truth"}) {
     EXPECT_EQ(fresh[what], drawn[what]) << what;

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/scratch_cache.h"
 #include "tools/lab/experiment.h"
 
 namespace cgsr::lab {
@@ -31,7 +32,10 @@ bool holds_about(const Row& row) {
   return !row.interval && *eased.met();
 }
 
-class Requirements : public ::testing::TestWithParam<Small> {};
+class Requirements : public ::testing::TestWithParam<Small> {
+ private:
+  test::ScratchCache cache_;  // the tables keep rendered images
+};
 
 TEST_P(Requirements, HoldOnAFewFixedTrials) {
   Setting setting;
