@@ -11,6 +11,7 @@
 #include "src/commands/board_views.h"
 #include "src/commands/command.h"
 #include "src/commands/files.h"
+#include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/output/picture.h"
 #include "src/output/text_file.h"

@@ -13,6 +13,7 @@
 #include "src/commands/board_views.h"
 #include "src/commands/command.h"
 #include "src/commands/files.h"
+#include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
 #include "src/input/pose_pairs.h"

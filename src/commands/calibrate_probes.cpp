@@ -11,6 +11,7 @@
 #include "src/commands/command.h"
 #include "src/commands/files.h"
 #include "src/commands/light_setup.h"
+#include "src/commands/option_checks.h"
 #include "src/input/pose_file.h"
 #include "src/output/text_file.h"
 

@@ -6,6 +6,7 @@
 
 #include "src/commands/command.h"
 #include "src/commands/files.h"
+#include "src/commands/option_checks.h"
 #include "src/config/listing.h"
 #include "src/config/load.h"
 #include "src/config/robot_docs.h"

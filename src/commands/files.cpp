@@ -1,7 +1,5 @@
 #include "src/commands/files.h"
 
-#include <CLI/CLI.hpp>
-
 #include "src/config/load.h"
 
 namespace cgsr::app {
@@ -12,10 +10,6 @@ void reads_layers(OutputClaims& files, const config::Robot& robot) {
 }
 
 }  // namespace
-
-void add_force_option(CLI::App& command, bool& force) {
-  command.add_flag("--force", force, "replace existing files of another kind too (never what the command reads)");
-}
 
 void reads_configuration(OutputClaims& files, const std::string& file, const std::string& option) {
   files.reads(file, option);

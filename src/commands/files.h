@@ -5,14 +5,7 @@
 #include "src/config/robot.h"
 #include "src/output/output_claims.h"
 
-namespace CLI {
-class App;
-}
-
 namespace cgsr::app {
-
-/// Adds --force, which lets OutputClaims replace a file of any kind.
-void add_force_option(CLI::App& command, bool& force);
 
 /// Names a configuration file and the files that it extends as inputs. \param file  empty: none.
 void reads_configuration(OutputClaims& files, const std::string& file, const std::string& option);

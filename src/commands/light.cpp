@@ -9,6 +9,7 @@
 #include "src/commands/command.h"
 #include "src/commands/files.h"
 #include "src/commands/light_run.h"
+#include "src/commands/option_checks.h"
 #include "src/output/progress.h"
 
 namespace cgsr::app {

@@ -34,4 +34,9 @@ inline CLI::Validator whole_number() {
   return {check, "whole number from 0"};
 }
 
+/// Adds --force, which lets OutputClaims (src/output/output_claims.h) replace a file of any kind.
+inline void add_force_option(CLI::App& command, bool& force) {
+  command.add_flag("--force", force, "replace existing files of another kind too (never what the command reads)");
+}
+
 }  // namespace cgsr::app

@@ -88,6 +88,7 @@ void add_people_command(CLI::App& app, int& exit_code) {
   identifying->add_option("--csv", options->csv,
                           "write a row for each face: the person's number, 0 for a stranger's; names stand only in the "
                           "identities file and on the terminal");
+  add_force_option(*identifying, options->force);
   identifying->callback([options, &exit_code] { exit_code = run_identify(*options); });
 
   auto* forgetting = add(*people, "forget", "delete somebody's face and name", options);

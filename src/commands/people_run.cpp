@@ -9,6 +9,7 @@
 #include "pipeline/person/face/face_descriptor.h"
 #include "src/input/identities_file.h"
 #include "src/input/small_file.h"
+#include "src/output/output_claims.h"
 #include "src/output/text_file.h"
 
 namespace cgsr::app {
@@ -149,6 +150,12 @@ IdentifyRun::IdentifyRun(PeopleOptions options, person::Identities identities, I
       gallery_(gallery_of(identities_)) {}
 
 Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
+  OutputClaims files(options.force);
+  files.reads(options.identities, "--identities");
+  files.reads(options.input, "--input");
+  files.reads(options.cascade, "--cascade");
+  files.writes(options.csv, "--csv", csv_file(kColumns));
+  if (auto claimed = files.claim(); !claimed) return tl::unexpected(claimed.error());
   auto identities = load_identities(options.identities);
   if (!identities) return tl::unexpected(identities.error());
   if (identities->people.empty()) return fail(fmt::format("{}: nobody is enrolled", options.identities));

@@ -22,6 +22,7 @@ struct PeopleOptions {
   std::string csv;
   std::string cascade = kFaceCascade;
   double min_face_px = person::FaceDetectorParameters{}.min_face_px;
+  bool force = false;
   bool more = false;  ///< enroll: the person is known already, these are more views.
 };
 

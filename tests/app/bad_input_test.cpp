@@ -232,7 +232,7 @@ TEST_F(BadInputFault, OutputsThatWouldDestroyAnInput) {
   write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/video.toml", {}));
   std::filesystem::create_symlink("m", scratch_ / "link");
   for (const std::string option : {"--csv", "--json"}) {
-    for (const std::string output :
+    for (const std::string& output :
          {scratch_ / "m", scratch_ / "link", scratch_ / "truth.txt", scratch_ / "robot.toml"}) {
       expect_refused(run_cgsr({"track", "--input", folder, "--model", learned, "--truth", scratch_ / "truth.txt",
                                "--config", scratch_ / "robot.toml", option, output, "--force"}),
@@ -248,6 +248,35 @@ TEST_F(BadInputFault, OutputsThatWouldDestroyAnInput) {
                  "is read as --model");
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "run.csv"));
   EXPECT_EQ(read_text(learned), before);
+}
+
+TEST_F(BadInputFault, OutputsOfTheSimulatorAndTheTables) {
+  write_text(scratch_ / "notes.txt", "not ours\n");
+  const std::string world = scratch_ / "world.toml";
+  write_text(world, read_text(CGSR_SOURCE_DIR "/config/worlds/home.toml"));
+  expect_refused(run_cgsr({"sim", "render", "--world", world, "--output", world, "--force"}), "to end in .png");
+  std::filesystem::create_symlink("world.toml", scratch_ / "look.png");
+  expect_refused(run_cgsr({"sim", "render", "--world", world, "--output", scratch_ / "look.png", "--force"}),
+                 "is read as --world");
+  expect_refused(
+      run_cgsr({"sim", "run", "--scenario", "home-follow", "--duration", "1", "--truth", scratch_ / "notes.txt"}),
+      "notes.txt: exists and is not a CSV file");
+  expect_refused(run_cgsr({"reproduce", "figure-3.3", "--json", scratch_ / "notes.txt"}),
+                 "notes.txt: exists and is not");
+  EXPECT_EQ(read_text(scratch_ / "notes.txt"), "not ours\n");
+}
+
+TEST_F(BadInputFault, PeopleWhoAreNotThere) {
+  const std::string people = scratch_ / "people.json";
+  const auto folder = images();
+  expect_refused(run_cgsr({"people", "identify", "--identities", people, "--input", folder}), "people.json");
+  expect_refused(run_cgsr({"people", "forget", "--identities", people, "--name", "nobody"}), "people.json");
+  expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", folder, "--cascade",
+                           scratch_ / "none.xml"}),
+                 "Debian's opencv-data has one");
+  expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", folder}),
+                 "with exactly one face");
+  EXPECT_FALSE(std::filesystem::exists(people));
 }
 
 TEST_F(BadInputFault, OutputsThatWouldReplaceAFileOfAnotherKind) {

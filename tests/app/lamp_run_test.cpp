@@ -108,6 +108,16 @@ TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
   EXPECT_EQ(summary["frames"]["late"], 0);
 }
 
+// Algorithm 5.2 from the first shadow to the masked state: it locates the lamp, backs off a little, waits for the masks and tracks with them.
+TEST_F(LampRun, LocatesTheLampBacksOffAndTracksWithTheMask) {
+  change({{"task.lamp.back_off_m", "0.4"}});
+  const auto summary = run("9");
+  ASSERT_FALSE(summary["task"].empty());
+  EXPECT_EQ(summary["task"].back()["state"], "tracking") << summary["task"];
+  EXPECT_GT(summary["light"]["masked"], 10) << summary["light"];
+  EXPECT_LT(summary["light"]["last_cm"], 20.0) << summary["light"];
+}
+
 TEST_F(LampRunFault, ALineThatDoesNotAnswerIsNamedAndItTracksWithoutAMask) {
   change({{"switches.probe_lamp_line", quoted("probe lamp")}});
   scenario_ += "line_event = [{ what = \"no_answer\", line = \"probe lamp\" }]\n";

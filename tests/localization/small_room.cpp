@@ -135,21 +135,31 @@ geometry::Pose in_small_room(double x_m, double y_m, double heading_rad) {
   return geometry::pose_on_floor(x_m, y_m, heading_rad) * X_RC;
 }
 
-Picture::Picture(const world::Map& map, const geometry::Pose& X_WC, const geometry::Camera& camera, double noise,
-                 std::uint32_t seed)
-    : pixels(static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px)),
-      width_(camera.width_px),
-      height_(camera.height_px) {
-  RandomNumbers random(seed);
-  const Eigen::Vector3d eye = X_WC.translation();
+namespace {
+
+/// A surface of the map as a ray meets it, and how bright it is.
+struct Plane {
+  Eigen::Vector3d normal;
+  double offset;
+  Eigen::AlignedBox3d bounds;
+  std::vector<std::array<Eigen::Vector3d, 3>> triangles;
+  double value;
+
+  [[nodiscard]] bool covers(const Eigen::Vector3d& p) const {
+    if (!bounds.contains(p)) return false;
+    return std::ranges::any_of(triangles, [&](const auto& corners) {
+      bool within = true;
+      for (std::size_t k = 0; k < 3 && within; ++k) {
+        const Eigen::Vector3d& a = corners[k];
+        within = (corners[(k + 1) % 3] - a).cross(p - a).dot(normal) >= 0.0;
+      }
+      return within;
+    });
+  }
+};
+
+std::vector<Plane> planes_of(const world::Map& map) {
   const Eigen::Vector3d sun = Eigen::Vector3d(0.4, -0.6, 0.8).normalized();
-  struct Plane {
-    Eigen::Vector3d normal;
-    double offset;
-    Eigen::AlignedBox3d bounds;
-    std::vector<std::array<Eigen::Vector3d, 3>> triangles;
-    double value;
-  };
   std::vector<Plane> planes;
   for (const world::Surface& surface : map.surfaces) {
     Plane& plane = planes.emplace_back();
@@ -167,30 +177,36 @@ Picture::Picture(const world::Map& map, const geometry::Pose& X_WC, const geomet
     plane.bounds.min().array() -= 1e-6;
     plane.bounds.max().array() += 1e-6;
   }
+  return planes;
+}
+
+/// The brightness of the first plane that a ray meets; 0: none.
+double seen_along(const std::vector<Plane>& planes, const Eigen::Vector3d& eye, const Eigen::Vector3d& ray) {
+  double nearest = std::numeric_limits<double>::max();
+  double value = 0.0;
+  for (const Plane& plane : planes) {
+    const double slope = plane.normal.dot(ray);
+    if (std::abs(slope) < 1e-9) continue;
+    const double depth = (plane.offset - plane.normal.dot(eye)) / slope;
+    if (depth < 0.01 || depth >= nearest || !plane.covers(eye + depth * ray)) continue;
+    nearest = depth;
+    value = plane.value;
+  }
+  return value;
+}
+
+}  // namespace
+
+Picture::Picture(const world::Map& map, const geometry::Pose& X_WC, const geometry::Camera& camera, double noise,
+                 std::uint32_t seed)
+    : pixels(static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px)),
+      width_(camera.width_px),
+      height_(camera.height_px) {
+  RandomNumbers random(seed);
+  const std::vector<Plane> planes = planes_of(map);
   const auto seen = [&](double u, double v) {
     const Eigen::Vector2d ideal = camera.ideal_of({u, v});
-    const Eigen::Vector3d ray = X_WC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0);
-    double nearest = std::numeric_limits<double>::max();
-    double value = 0.0;
-    for (const Plane& plane : planes) {
-      const double slope = plane.normal.dot(ray);
-      if (std::abs(slope) < 1e-9) continue;
-      const double depth = (plane.offset - plane.normal.dot(eye)) / slope;
-      if (depth < 0.01 || depth >= nearest) continue;
-      const Eigen::Vector3d p = eye + depth * ray;
-      if (!plane.bounds.contains(p)) continue;
-      for (const auto& corners : plane.triangles) {
-        bool within = true;
-        for (std::size_t k = 0; k < 3 && within; ++k) {
-          const Eigen::Vector3d& a = corners[k];
-          within = (corners[(k + 1) % 3] - a).cross(p - a).dot(plane.normal) >= 0.0;
-        }
-        if (!within) continue;
-        nearest = depth;
-        value = plane.value;
-      }
-    }
-    return value;
+    return seen_along(planes, X_WC.translation(), X_WC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0));
   };
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {

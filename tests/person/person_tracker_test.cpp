@@ -43,12 +43,17 @@ Picture standing(const Rgb& shirt) {
 }
 
 FaceSighting face_of(std::optional<Label> person, double confidence = 0.95) {
-  return {kFaceBox, {.label = person, .confidence = confidence}};
+  FaceMatch match;
+  match.label = person;
+  match.confidence = confidence;
+  return {kFaceBox, match};
 }
 
 void learn(PersonTracker& tracker, Label person, const Rgb& shirt) {
   const Picture picture = standing(shirt);
-  for (int image = 0; image < 10; ++image) tracker.update({picture.view(), face_of(person)});
+  // Ten faces; once somebody's shirt is known they are looked for in every other image only.
+  for (int image = 0; image < 20 && !tracker.shirts().knows(person); ++image)
+    tracker.update({picture.view(), face_of(person)});
 }
 
 // The story of Fig. 6.8: seen from the front, turned away, out of sight, back again.

@@ -44,6 +44,29 @@ double shared_px(const std::vector<VisiblePiece>& first, const std::vector<Visib
   return sum;
 }
 
+/// What both see of the map's edges from one pose, and what the raster sees of them from beside or with more tolerance.
+struct Looks {
+  std::vector<VisiblePiece> ours;
+  std::vector<VisiblePiece> theirs;
+  std::vector<VisiblePiece> lenient;
+  std::vector<VisiblePiece> beside;
+  std::vector<VisiblePiece> other_side;
+};
+
+Looks look_from(const Pose& X_WC, const Camera& camera, DepthRaster& raster, DepthRaster& lenient,
+                OsmesaExpectation& osmesa) {
+  Looks looks;
+  raster.look(X_WC, camera, looks.ours);
+  osmesa.look(X_WC, camera, looks.theirs);
+  lenient.look(X_WC, camera, looks.lenient);
+  Pose beside = X_WC;
+  beside.translation() += X_WC.linear() * Eigen::Vector3d(0.004, 0.004, 0.0);
+  raster.look(beside, camera, looks.beside);
+  beside.translation() -= 2.0 * X_WC.linear() * Eigen::Vector3d(0.004, 0.004, 0.0);
+  raster.look(beside, camera, looks.other_side);
+  return looks;
+}
+
 /// Every edge that either sees: both see the same of it, within 3 px at each end of each piece, but for a share of `most`.
 ///
 /// OpenGL draws finely: at 1280 columns a hidden edge less than a pixel behind a silhouette (the far side of a door's or a seat's thickness)
@@ -75,29 +98,17 @@ void agree_in(const std::string& name, int poses, double most) {
   for (int trial = 0; trial < poses; ++trial) {
     const Pose X_WC = free_pose(map, random);
     const Camera camera = trial % 2 == 0 ? Camera() : lens;
-    std::vector<VisiblePiece> ours;
-    std::vector<VisiblePiece> theirs;
-    std::vector<VisiblePiece> lenient_pieces;
-    std::vector<VisiblePiece> beside_pieces;
-    std::vector<VisiblePiece> other_side_pieces;
-    raster.look(X_WC, camera, ours);
-    (*osmesa)->look(X_WC, camera, theirs);
-    within_a_hair.look(X_WC, camera, lenient_pieces);
-    Pose beside = X_WC;
-    beside.translation() += X_WC.linear() * Eigen::Vector3d(0.004, 0.004, 0.0);
-    raster.look(beside, camera, beside_pieces);
-    beside.translation() -= 2.0 * X_WC.linear() * Eigen::Vector3d(0.004, 0.004, 0.0);
-    raster.look(beside, camera, other_side_pieces);
+    const Looks looks = look_from(X_WC, camera, raster, within_a_hair, **osmesa);
     for (std::uint32_t edge = 0; edge < map.edges.size(); ++edge) {
-      const auto a = of_edge(ours, edge);
-      const auto b = of_edge(theirs, edge);
+      const auto a = of_edge(looks.ours, edge);
+      const auto b = of_edge(looks.theirs, edge);
       if (a.empty() && b.empty()) continue;
       ++edges;
       const double ours_px = length_px(a);
       const auto differs = [&](const std::vector<VisiblePiece>& other, double by_px) {
         return std::abs(length_px(of_edge(other, edge)) - ours_px) > by_px;
       };
-      if (differs(lenient_pieces, 3.0) || differs(beside_pieces, 6.0) || differs(other_side_pieces, 6.0)) {
+      if (differs(looks.lenient, 3.0) || differs(looks.beside, 6.0) || differs(looks.other_side, 6.0)) {
         ++open;
         continue;
       }

@@ -109,6 +109,30 @@ View look_at_board(const Chessboard& board, Renderer& renderer, const Pose& X_WC
   return view;
 }
 
+/// How far a calibrated distortion moves points otherwise than the camera's own, at most, and how far that moves them.
+struct DistortionError {
+  double off_px = 0.0;
+  double most_px = 0.0;
+};
+
+DistortionError distortion_error(const CameraModel& camera, const cv::Mat& found_distortion) {
+  DistortionError error;
+  for (double y = -0.38; y <= 0.38; y += 0.04) {
+    for (double x = -0.5; x <= 0.5; x += 0.04) {
+      const auto projected = [&](const auto& with) {
+        std::vector<cv::Point2d> points;
+        cv::projectPoints(std::vector<cv::Point3d>{{x, y, 1.0}}, cv::Vec3d(), cv::Vec3d(), matrix(camera), with,
+                          points);
+        return points[0];
+      };
+      const cv::Point2d ours = projected(distortion(camera));
+      error.off_px = std::max(error.off_px, cv::norm(ours - projected(found_distortion)));
+      error.most_px = std::max(error.most_px, cv::norm(ours - projected(cv::Mat())));
+    }
+  }
+  return error;
+}
+
 // Corner by corner against the analytic projection, then the whole through OpenCV's calibration, as one does with a real camera.
 TEST(LensCalibration, OpenCvFindsTheTrueCameraInRenderedChessboards) {
   const Chessboard board;
@@ -148,21 +172,7 @@ TEST(LensCalibration, OpenCvFindsTheTrueCameraInRenderedChessboards) {
   EXPECT_NEAR(K.at<double>(1, 2) / camera.cy_px, 1.0, 0.002);
   EXPECT_NEAR(d.at<double>(0) / camera.k1, 1.0, 0.002);
   // The distortion as it moves points: anywhere in the image, and against how far it moves them in a corner.
-  double off_px = 0.0;
-  double most_px = 0.0;
-  for (double y = -0.38; y <= 0.38; y += 0.04) {
-    for (double x = -0.5; x <= 0.5; x += 0.04) {
-      std::vector<cv::Point2d> ours;
-      std::vector<cv::Point2d> found;
-      std::vector<cv::Point2d> straight;
-      const std::vector<cv::Point3d> point{{x, y, 1.0}};
-      cv::projectPoints(point, cv::Vec3d(), cv::Vec3d(), matrix(camera), distortion(camera), ours);
-      cv::projectPoints(point, cv::Vec3d(), cv::Vec3d(), matrix(camera), d, found);
-      cv::projectPoints(point, cv::Vec3d(), cv::Vec3d(), matrix(camera), cv::noArray(), straight);
-      off_px = std::max(off_px, cv::norm(ours[0] - found[0]));
-      most_px = std::max(most_px, cv::norm(ours[0] - straight[0]));
-    }
-  }
+  const auto [off_px, most_px] = distortion_error(camera, d);
   EXPECT_LT(off_px, 0.002 * most_px) << "of the way that the lens moves points";
   EXPECT_GT(most_px, 5.0) << "the lens does distort";
   RecordProperty("worst_corner_px", std::to_string(worst_px));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "src/commands/option_checks.h"
 #include "src/commands/parse_error.h"
 #include "src/config/load.h"
+#include "src/output/text_file.h"
 #include "tools/lab/ball_follower.h"
 #include "tools/lab/reproduce.h"
 #include "tools/lab/searched_poses.h"
@@ -68,7 +70,7 @@ int follow_film(const FilmOptions& options) {
     text +=
         fmt::format("{},{},{:.2f},{:.2f},{:.2f},{:.2f}\n", i, (*boxes)[i] ? 1 : 0, box.x, box.y, box.width, box.height);
   }
-  const auto written = write_file(options.csv, text);
+  const auto written = cgsr::app::write_file(options.csv, text);
   return written ? 0 : complain(written.error());
 }
 
@@ -100,6 +102,61 @@ void add_film_options(CLI::App& command, FilmOptions& options) {
   command.add_flag("--absent", options.absent, "generated film: the object is in the first image alone");
 }
 
+/// What main() offers beside the tables, for tools/count and for looking at single films.
+struct Commands {
+  explicit Commands(CLI::App& app);
+  /// \return the exit code of the command that was given; nothing: none was.
+  std::optional<int> run() const;
+
+  FilmOptions film;
+  BallOptions ball;
+  std::uint64_t shade_seed = 1;
+  int shade_views = 10;
+  std::uint64_t search_seed = 1;
+  int search_poses = 5;
+  CLI::App* follow;
+  CLI::App* scenes;
+  CLI::App* follow_ball;
+  CLI::App* shade;
+  CLI::App* search;
+};
+
+Commands::Commands(CLI::App& app)
+    : follow(app.add_subcommand("follow", "run one tracker over one film and score it")),
+      scenes(app.add_subcommand("scenes", "write a generated film as images and truth")),
+      follow_ball(app.add_subcommand("follow-ball", "chapter 5's tracker over a folder with a mask of shade")),
+      shade(app.add_subcommand("shade", "look for shaded regions in the home, for tools/count")),
+      search(app.add_subcommand("search-pose", "search for poses on the field, for tools/count")) {
+  std::vector<std::string> names;
+  for (const NamedTracker& tracker : trackers()) names.emplace_back(tracker.name);
+  follow->add_option("--tracker", film.tracker)->check(CLI::IsMember(names));
+  follow->add_option("--input", film.input, "folder with img/ and groundtruth.txt");
+  follow->add_option("--learn-from", film.learn_from, "another such folder: its object is sought in --input");
+  follow->add_option("--size", film.size, "WxH: scale every image of --input");
+  follow->add_option("--csv", film.csv, "frame,found,x,y,width,height");
+  add_film_options(*follow, film);
+  scenes->add_option("--output", film.output)->required();
+  add_film_options(*scenes, film);
+  follow_ball->add_option("--input", ball.input, "folder with img/, groundtruth.txt and mask.png")->required();
+  follow_ball->add_option("--focal", ball.focal_px, "of the camera, in pixels")->capture_default_str();
+  follow_ball->add_flag("--without-mask", ball.without_mask, "search dark histograms everywhere");
+  follow_ball->add_option("--config", ball.config, "a robot's file, for its section [color]");
+  shade->add_option("--seed", shade_seed)->check(cgsr::app::whole_number());
+  shade->add_option("--views", shade_views)->check(cgsr::app::in_range(1, 10000));
+  search->add_option("--seed", search_seed)->check(cgsr::app::whole_number());
+  search->add_option("--poses", search_poses)->check(cgsr::app::in_range(1, 10000));
+}
+
+std::optional<int> Commands::run() const {
+  const auto code_of = [](const auto& done) { return done ? 0 : complain(done.error()); };
+  if (*follow) return follow_film(film);
+  if (*follow_ball) return follow_ball_film(ball);
+  if (*scenes) return save_scenes(film);
+  if (*search) return code_of(search_for_poses(search_seed, search_poses));
+  if (*shade) return code_of(look_at_shade(shade_seed, shade_views));
+  return std::nullopt;
+}
+
 }  // namespace
 }  // namespace cgsr::lab
 
@@ -107,39 +164,9 @@ int main(int argc, char** argv) {
   using namespace cgsr::lab;
   cv::setNumThreads(1);
   CLI::App app{"The dissertation's tables and figures, ours beside its own.", "cgsr reproduce"};
-  ReproduceOptions reproduce_options;
-  add_reproduce(app, reproduce_options);
-
-  FilmOptions film_options;
-  CLI::App* follow_command = app.add_subcommand("follow", "run one tracker over one film and score it");
-  std::vector<std::string> names;
-  for (const NamedTracker& tracker : trackers()) names.emplace_back(tracker.name);
-  follow_command->add_option("--tracker", film_options.tracker)->check(CLI::IsMember(names));
-  follow_command->add_option("--input", film_options.input, "folder with img/ and groundtruth.txt");
-  follow_command->add_option("--learn-from", film_options.learn_from,
-                             "another such folder: its object is sought in --input");
-  follow_command->add_option("--size", film_options.size, "WxH: scale every image of --input");
-  follow_command->add_option("--csv", film_options.csv, "frame,found,x,y,width,height");
-  add_film_options(*follow_command, film_options);
-  CLI::App* scenes_command = app.add_subcommand("scenes", "write a generated film as images and truth");
-  scenes_command->add_option("--output", film_options.output)->required();
-  add_film_options(*scenes_command, film_options);
-  BallOptions ball_options;
-  CLI::App* ball_command = app.add_subcommand("follow-ball", "chapter 5's tracker over a folder with a mask of shade");
-  ball_command->add_option("--input", ball_options.input, "folder with img/, groundtruth.txt and mask.png")->required();
-  ball_command->add_option("--focal", ball_options.focal_px, "of the camera, in pixels")->capture_default_str();
-  ball_command->add_flag("--without-mask", ball_options.without_mask, "search dark histograms everywhere");
-  ball_command->add_option("--config", ball_options.config, "a robot's file, for its section [color]");
-  std::uint64_t shade_seed = 1;
-  int shade_views = 10;
-  CLI::App* shade_command = app.add_subcommand("shade", "look for shaded regions in the home, for tools/count");
-  shade_command->add_option("--seed", shade_seed)->check(cgsr::app::whole_number());
-  shade_command->add_option("--views", shade_views)->check(cgsr::app::in_range(1, 10000));
-  std::uint64_t search_seed = 1;
-  int search_poses = 5;
-  CLI::App* search_command = app.add_subcommand("search-pose", "search for poses on the field, for tools/count");
-  search_command->add_option("--seed", search_seed)->check(cgsr::app::whole_number());
-  search_command->add_option("--poses", search_poses)->check(cgsr::app::in_range(1, 10000));
+  ReproduceOptions options;
+  add_reproduce(app, options);
+  const Commands commands(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {
@@ -147,18 +174,8 @@ int main(int argc, char** argv) {
   }
 
   try {
-    if (*follow_command) return follow_film(film_options);
-    if (*ball_command) return follow_ball_film(ball_options);
-    if (*scenes_command) return save_scenes(film_options);
-    if (*search_command) {
-      const auto searched = search_for_poses(search_seed, search_poses);
-      return searched ? 0 : complain(searched.error());
-    }
-    if (*shade_command) {
-      const auto looked = look_at_shade(shade_seed, shade_views);
-      return looked ? 0 : complain(looked.error());
-    }
-    const auto reproduced = reproduce(reproduce_options);
+    if (const auto code = commands.run()) return *code;
+    const auto reproduced = reproduce(options);
     return reproduced ? *reproduced : complain(reproduced.error());
   } catch (const std::exception& error) {  // OpenCV's, of a defective picture
     return complain({error.what()});

@@ -11,6 +11,8 @@
 
 #include "src/commands/option_checks.h"
 #include "src/config/load.h"
+#include "src/output/output_claims.h"
+#include "src/output/text_file.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/join.h"
 #include "tools/lab/page.h"
@@ -93,6 +95,11 @@ Result<Report> run_one(const Experiment& experiment, const Setting& setting, con
 }
 
 Result<void> measure_all(const ReproduceOptions& options) {
+  app::OutputClaims files(options.force);
+  files.reads(options.config, "--config");
+  files.writes(options.json, "--json", app::json_list());
+  files.writes(options.html, "--html", app::html_page());
+  if (auto claimed = files.claim(); !claimed) return claimed;
   const auto wanted = chosen(options);
   if (!wanted) return tl::unexpected(wanted.error());
   const auto setting = setting_of(options);
@@ -112,9 +119,9 @@ Result<void> measure_all(const ReproduceOptions& options) {
     reports.push_back(std::move(*report));
   }
   if (!options.json.empty()) {
-    if (auto written = write_file(options.json, to_json_text(reports)); !written) return written;
+    if (auto written = app::write_file(options.json, to_json_text(reports)); !written) return written;
   }
-  return options.html.empty() ? Result<void>{} : write_file(options.html, to_html(reports));
+  return options.html.empty() ? Result<void>{} : app::write_file(options.html, to_html(reports));
 }
 
 Result<int> check_page(const std::string& page, const std::vector<PageEntry>& entries) {
@@ -136,13 +143,6 @@ Result<int> check_page(const std::string& page, const std::vector<PageEntry>& en
 
 }  // namespace
 
-Result<void> write_file(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) return fail(fmt::format("{}: cannot be written", path));
-  return {};
-}
-
 void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_option("name", options.names, "tables to reproduce; none: all that are not by name only");
   app.add_flag("--list", options.list, "name what there is");
@@ -158,6 +158,7 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_flag("--no-count", options.no_count, "leave out the instructions, which are slow to count");
   app.add_option("--json", options.json, "write the rows for machines");
   app.add_option("--html", options.html, "write a page with tables and plots");
+  cgsr::app::add_force_option(app, options.force);
   app.add_flag("--store", options.store, "replace the published results of these tables (docs/results)");
   app.add_flag("--resume", options.resume,
                "the same, joining these trials to published ones of equal configuration and sources");
@@ -179,7 +180,7 @@ Result<int> reproduce(const ReproduceOptions& options) {
     if (!entries) return tl::unexpected(entries.error());
     const std::string page = page_of(*entries);
     if (options.check_page) return check_page(page, *entries);
-    const auto written = write_file(source_path(kPage), page);
+    const auto written = app::write_file(source_path(kPage), page);
     if (!written) return tl::unexpected(written.error());
     return 0;
   }

@@ -27,6 +27,7 @@ struct ReproduceOptions {
   bool resume = false;
   bool page = false;
   bool check_page = false;
+  bool force = false;
   std::string results;  ///< folder of the store; empty: docs/results of the source tree.
   TrackingOptions tracking;
 };
@@ -35,8 +36,5 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options);
 
 /// \return the program's exit code: 1 when the page is checked and wrong; or what went wrong.
 Result<int> reproduce(const ReproduceOptions& options);
-
-/// \return which file cannot be written.
-Result<void> write_file(const std::string& path, const std::string& text);
 
 }  // namespace cgsr::lab

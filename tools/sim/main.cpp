@@ -10,6 +10,7 @@
 
 #include "src/commands/option_checks.h"
 #include "src/commands/parse_error.h"
+#include "src/output/output_claims.h"
 #include "tools/sim/export_world.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"
@@ -29,6 +30,7 @@ struct RenderWords {
   double at_s = 0.0;
   bool no_noise = false;
   bool no_lens = false;
+  bool force = false;
   PictureRequest request;
   PictureFiles files;
 };
@@ -73,6 +75,7 @@ void add_render(CLI::App& command, RenderWords& words) {
   command.add_option("--output", words.files.output, "the picture, .png")->required();
   command.add_option("--truth", words.files.truth_folder,
                      "also write what is there into this folder: truth.csv, depth, parts, shadow masks");
+  cgsr::app::add_force_option(command, words.force);
   command.add_option("--lamp", words.files.lamp, "whose shadows --truth means; the first one's when not given");
 }
 
@@ -89,6 +92,7 @@ void add_export(CLI::App& command, ExportWords& words) {
 
 struct RunWords {
   std::string scenario, size;
+  bool force = false;
   ScenarioRun run;
 };
 
@@ -106,12 +110,18 @@ void add_run(CLI::App& command, RunWords& words) {
       ->capture_default_str();
   command.add_option("--video", words.run.video, "the camera's images beside a plan of the home: .mkv, .avi or .mp4");
   command.add_option("--truth", words.run.truth, "what is really there, a row an image: .csv");
+  cgsr::app::add_force_option(command, words.force);
 }
 
 int run(RunWords& words) {
   const auto file = find_scenario(words.scenario);
   if (!file) return complain(file.error());
   words.run.scenario = *file;
+  app::OutputClaims files(words.force);
+  files.reads(*file, "--scenario");
+  files.writes(words.run.video, "--video", app::video_file());
+  files.writes(words.run.truth, "--truth", app::csv_file(kTruthColumns));
+  if (const auto claimed = files.claim(); !claimed) return complain(claimed.error());
   if (!words.size.empty()) {
     const auto size = parse_image_size(words.size);
     if (!size) return complain(size.error());
@@ -125,7 +135,17 @@ int run(RunWords& words) {
   return 0;
 }
 
+Result<void> claim_picture(const RenderWords& words) {
+  const auto world = find_world(words.world);
+  if (!world) return tl::unexpected(world.error());
+  app::OutputClaims files(words.force);
+  files.reads(*world, "--world");
+  files.writes(words.files.output, "--output", app::picture_file());
+  return files.claim();
+}
+
 int render(RenderWords& words, bool time_given) {
+  if (const auto claimed = claim_picture(words); !claimed) return complain(claimed.error());
   const auto world = load_world(words.world);
   if (!world) return complain(world.error());
   if (!words.pose.empty() || !words.from.empty()) {

@@ -15,10 +15,6 @@
 namespace cgsr::sim {
 namespace {
 
-constexpr const char* kTruthColumns =
-    "image,stamp_s,robot_x_m,robot_y_m,robot_heading_rad,robot_pitch_rad,tx,ty,tz,qw,qx,qy,qz,there,in_view,object_x_m,"
-    "object_y_m,object_mps,distance_m,left,top,width,height";
-
 std::string row_of(std::uint64_t image, const hal::ImageTruth& t) {
   const auto& q = t.camera_wxyz;
   std::string row = fmt::format(

@@ -18,6 +18,11 @@ struct ScenarioRun {
   std::filesystem::path truth;  ///< CSV, a row an image; empty: none.
 };
 
+/// The columns of the file `truth`.
+inline constexpr const char* kTruthColumns =
+    "image,stamp_s,robot_x_m,robot_y_m,robot_heading_rad,robot_pitch_rad,tx,ty,tz,qw,qx,qy,qz,there,in_view,object_x_m,"
+    "object_y_m,object_mps,distance_m,left,top,width,height";
+
 /// What came of it.
 struct ScenarioPlayed {
   std::uint64_t images = 0;

@@ -43,7 +43,9 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
   const auto settled = feedback_.classify(input);
   if (due && input.face) shirts_.observe_face(input, *input.face);
   if (!settled) return {};
-  PersonSighting sighting{.person = settled->label, .confidence = settled->confidence};
+  PersonSighting sighting;
+  sighting.person = settled->label;
+  sighting.confidence = settled->confidence;
   const auto& face = feedback_.members()[kFace].answer;
   if (face && face->label == settled->label) {
     sighting.source = PersonSource::kFace;

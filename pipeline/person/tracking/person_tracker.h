@@ -31,7 +31,7 @@ struct PersonTrackerParameters {
     visit.section("shirt", self.shirt, "Shirts by their colours");
     visit.section("context", self.context, "How a disturbed image lowers confidence");
     visit.number("faces_every", self.faces_every, Range{1, 30}, "",
-                 "A face is looked for in every so-manieth image once a shirt is known.");
+                 "A face is looked for in one of this many images once a shirt is known.");
   }
 };
 

@@ -313,6 +313,68 @@ struct CastleTally {
   }
 };
 
+/// The pictures of Castle-simu with their true poses, and a prior that is `off` percent and degrees away from each.
+Result<std::vector<CastleTrial>> castle_trials(const Setting& setting, const std::vector<fs::path>& pictures,
+                                               const Vector3d& centre, double off) {
+  std::vector<CastleTrial> trials;
+  const int most = std::min(setting.trials, static_cast<int>(pictures.size()));
+  for (int i = 0; i < most; ++i) {
+    const auto X_WC = castle_pose(i + 1);
+    if (!X_WC) return tl::unexpected(X_WC.error());
+    const std::string name = pictures[static_cast<std::size_t>(i)].string();
+    CastleTrial trial{cv::imread(name, cv::IMREAD_GRAYSCALE), *X_WC, {}};
+    if (trial.grey.empty()) return fail(fmt::format("{}: is no picture", name));
+    const auto stream = static_cast<std::uint64_t>(1000.0 * off) + static_cast<std::uint64_t>(i);
+    trial.prior = castle_prior(*X_WC, centre, off, Random(setting.seed).fork(stream));
+    trials.push_back(std::move(trial));
+  }
+  return trials;
+}
+
+/// Where ours was right, and a note on why it did not correct the others.
+CastleTally castle_by_ours(stages::LocalizeStage& stage, const std::vector<CastleTrial>& trials, const Vector3d& centre,
+                           const std::string& from, Report& report) {
+  CastleTally ours;
+  std::map<std::string, int> refused;
+  for (const CastleTrial& trial : trials) {
+    const cv::Mat& grey = trial.grey;
+    const ImageView image{grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8};
+    const Outcome outcome =
+        correct_once(stage, image, trial.prior, {trial.X_WC, trial.X_WC, 0}, geometry::Pose::Identity());
+    if (!outcome.answer.corrected) ++refused[std::string(to_string(outcome.answer.reason))];
+    ours.add(outcome.answer.corrected ? std::optional(outcome.answer.X_WC) : std::nullopt, trial.X_WC, centre);
+  }
+  ours.add_rows(fmt::format("Castle-simu, {}, ours", from), report);
+  std::string words;
+  for (const auto& [reason, count] : refused) words += fmt::format(" {} {}", count, reason);
+  report.notes.push_back(fmt::format("Castle-simu, {}: ours not corrected:{}.", from, words.empty() ? " none" : words));
+  return ours;
+}
+
+/// The best of ViSP's settings, with its name.
+Result<std::pair<CastleTally, std::string>> castle_by_visp(const geometry::Camera& camera,
+                                                           const std::vector<CastleTrial>& trials,
+                                                           const Vector3d& centre, const std::string& from,
+                                                           Report& report) {
+  std::optional<CastleTally> best;
+  std::string best_name;
+  for (const VispChoice& choice : kVispChoices) {
+    auto visp =
+        VispEdges::create({{kCastle / "Models" / "chateau.cao"}, {kCastle / "Models" / "cube.cao", castle_model()}},
+                          camera, {choice.range_px, choice.calls});
+    if (!visp) return tl::unexpected(visp.error());
+    CastleTally theirs;
+    for (const CastleTrial& trial : trials)
+      theirs.add(visp->begin(trial.grey, trial.prior.X_WC) ? visp->track(trial.grey) : std::nullopt, trial.X_WC,
+                 centre);
+    theirs.add_rows(fmt::format("Castle-simu, {}, {}", from, choice.name()), report);
+    if (best && theirs.good <= best->good) continue;
+    best = std::move(theirs);
+    best_name = choice.name();
+  }
+  return std::pair(std::move(*best), best_name);
+}
+
 Result<void> add_castle(const Setting& setting, const config::Localization& free, Report& report) {
   const auto map = castle_map();
   if (!map) return tl::unexpected(map.error());
@@ -320,63 +382,24 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
   const Vector3d centre = centre_of(*map);
   const auto stage = localize_stage({camera, geometry::Pose::Identity(), *map}, free);
   const auto pictures = pictures_of(kCastle / "Images");
-  const int most = std::min(setting.trials, static_cast<int>(pictures.size()));
   for (const double off : {2.0, 5.0}) {
     const std::string from = fmt::format("from {:.0f} % and {:.0f} degrees", off, off);
     setting.progress("Castle-simu, " + from);
-    std::vector<CastleTrial> trials;
-    for (int i = 0; i < most; ++i) {
-      const auto X_WC = castle_pose(i + 1);
-      if (!X_WC) return tl::unexpected(X_WC.error());
-      CastleTrial trial{cv::imread(pictures[static_cast<std::size_t>(i)].string(), cv::IMREAD_GRAYSCALE), *X_WC, {}};
-      if (trial.grey.empty())
-        return fail(fmt::format("{}: is no picture", pictures[static_cast<std::size_t>(i)].string()));
-      const auto stream = static_cast<std::uint64_t>(1000.0 * off) + static_cast<std::uint64_t>(i);
-      trial.prior = castle_prior(*X_WC, centre, off, Random(setting.seed).fork(stream));
-      trials.push_back(std::move(trial));
-    }
-    CastleTally ours;
-    std::map<std::string, int> refused;
-    for (const CastleTrial& trial : trials) {
-      const cv::Mat& grey = trial.grey;
-      const ImageView image{grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step),
-                            PixelFormat::kGrey8};
-      const Outcome outcome =
-          correct_once(*stage, image, trial.prior, {trial.X_WC, trial.X_WC, 0}, geometry::Pose::Identity());
-      if (!outcome.answer.corrected) ++refused[std::string(to_string(outcome.answer.reason))];
-      ours.add(outcome.answer.corrected ? std::optional(outcome.answer.X_WC) : std::nullopt, trial.X_WC, centre);
-    }
-    ours.add_rows(fmt::format("Castle-simu, {}, ours", from), report);
-    std::string words;
-    for (const auto& [reason, count] : refused) words += fmt::format(" {} {}", count, reason);
-    report.notes.push_back(
-        fmt::format("Castle-simu, {}: ours not corrected:{}.", from, words.empty() ? " none" : words));
+    const auto trials = castle_trials(setting, pictures, centre, off);
+    if (!trials) return tl::unexpected(trials.error());
+    const CastleTally ours = castle_by_ours(*stage, *trials, centre, from, report);
     const auto seen =
         film(setting, fmt::format("castle-{:.0f}-ours", off), *map, camera, pictures, ours.found, "ours, " + from);
     if (!seen) return tl::unexpected(seen.error());
     report.notes.push_back(fmt::format("Film: {}.", seen->string()));
     if (!VispEdges::built()) continue;
-    std::optional<CastleTally> best;
-    std::string best_name;
-    for (const VispChoice& choice : kVispChoices) {
-      auto visp =
-          VispEdges::create({{kCastle / "Models" / "chateau.cao"}, {kCastle / "Models" / "cube.cao", castle_model()}},
-                            camera, {choice.range_px, choice.calls});
-      if (!visp) return tl::unexpected(visp.error());
-      CastleTally theirs;
-      for (const CastleTrial& trial : trials) {
-        theirs.add(visp->begin(trial.grey, trial.prior.X_WC) ? visp->track(trial.grey) : std::nullopt, trial.X_WC,
-                   centre);
-      }
-      theirs.add_rows(fmt::format("Castle-simu, {}, {}", from, choice.name()), report);
-      if (best && theirs.good <= best->good) continue;
-      best = std::move(theirs);
-      best_name = choice.name();
-    }
-    const auto filmed = film(setting, fmt::format("castle-{:.0f}-visp", off), *map, camera, pictures, best->found,
-                             fmt::format("{}, {}", best_name, from));
+    const auto visp = castle_by_visp(camera, *trials, centre, from, report);
+    if (!visp) return tl::unexpected(visp.error());
+    const auto& [best, name] = *visp;
+    const auto filmed = film(setting, fmt::format("castle-{:.0f}-visp", off), *map, camera, pictures, best.found,
+                             fmt::format("{}, {}", name, from));
     if (!filmed) return tl::unexpected(filmed.error());
-    report.notes.push_back(fmt::format("Film: {} ({}).", filmed->string(), best_name));
+    report.notes.push_back(fmt::format("Film: {} ({}).", filmed->string(), name));
   }
   return {};
 }

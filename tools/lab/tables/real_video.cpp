@@ -96,6 +96,22 @@ Plot precision_over_time(const Film& film, const std::vector<std::pair<std::stri
   return plot;
 }
 
+/// The mean over the films of one tracker's scores and cost.
+void add_mean_of_films(std::string_view name, const Scores& scores, const std::vector<Cost>& costs,
+                       const Setting& setting, Report& report) {
+  const std::string row = fmt::format("mean / {}", name);
+  add_mean_rows(row, scores, setting.seed, report);
+  if (!setting.count) return;
+  Cost all;
+  for (const Cost& cost : costs) {
+    all.mean_minstr += cost.mean_minstr / static_cast<double>(costs.size());
+    all.worst_minstr = std::max(all.worst_minstr, cost.worst_minstr);
+  }
+  const int images = (kCountedImages - 1) * static_cast<int>(kFolders.size());
+  report.rows.push_back(cost_row(row, "cost", all.mean_minstr, images));
+  report.rows.push_back(cost_row(row, "worst cost", all.worst_minstr, images));
+}
+
 }  // namespace
 
 Result<Report> real_video(const Setting& setting) {
@@ -132,19 +148,8 @@ Result<Report> real_video(const Setting& setting) {
     }
     report.plots.push_back(precision_over_time(*film, tracks));
   }
-  for (const NamedTracker& named : trackers()) {
-    const std::string row = fmt::format("mean / {}", named.name);
-    add_mean_rows(row, scores[named.name], setting.seed, report);
-    Cost all;
-    for (const Cost& cost : costs[named.name]) {
-      all.mean_minstr += cost.mean_minstr / static_cast<double>(costs[named.name].size());
-      all.worst_minstr = std::max(all.worst_minstr, cost.worst_minstr);
-    }
-    if (!setting.count) continue;
-    const int images = (kCountedImages - 1) * static_cast<int>(kFolders.size());
-    report.rows.push_back(cost_row(row, "cost", all.mean_minstr, images));
-    report.rows.push_back(cost_row(row, "worst cost", all.worst_minstr, images));
-  }
+  for (const NamedTracker& named : trackers())
+    add_mean_of_films(named.name, scores[named.name], costs[named.name], setting, report);
   report.notes = {
       "The dissertation's Figure 3.3 is a curve over a film that is not public; it gives no table, so its column is "
       "empty.",
