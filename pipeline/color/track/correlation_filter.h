@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "pipeline/imaging/fourier.h"
+#include "pipeline/color/track/fourier.h"
 #include "platform/parameters.h"
 
 namespace cgsr::color {

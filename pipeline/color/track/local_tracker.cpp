@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "pipeline/imaging/orientation_histograms.h"
+#include "pipeline/color/track/orientation_histograms.h"
 
 namespace cgsr::color {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pipeline/imaging/orientation_histograms.h"
+#include "pipeline/color/track/orientation_histograms.h"
 #include "pipeline/imaging/pyramid.h"
 #include "platform/box.h"
 #include "platform/parameters.h"

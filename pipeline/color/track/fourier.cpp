@@ -1,4 +1,4 @@
-#include "pipeline/imaging/fourier.h"
+#include "pipeline/color/track/fourier.h"
 
 #include <emmintrin.h>
 

@@ -1,4 +1,4 @@
-#include "pipeline/imaging/orientation_histograms.h"
+#include "pipeline/color/track/orientation_histograms.h"
 
 #include <gtest/gtest.h>
 
