@@ -1,0 +1,229 @@
+#!/usr/bin/env python3
+"""Judges a run of the virtual robot computer by what separate processes wrote down.
+
+usage: evaluate.py NAME FOLDER --job-code N [--scene FOLDER]
+
+Reads from FOLDER: bus.log (candump), marks.txt (the job), base.txt and feeder.json (the feeder), summary.json and rows.csv (the service). Writes
+FOLDER/result.json, prints a table, exits with 0 when every requirement is met. A figure that could not be obtained is a failure.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import re
+import sys
+
+ZERO_WITHIN_S = 0.2        # while the process lives: from the injection to the last command that is not zero
+SENT_BEFORE_DEATH_S = 0.02  # two control cycles: what was on its way when the process was killed
+BASE_WAITS_S = 0.4         # the simulated base goes on after the last command for this time
+BASE_STANDS_S = 2.0        # and stands after this one
+STANDS_MPS = 0.02
+FOREIGN = (7, 0)           # what the second commander sends
+MOTION_PERIOD_S = 0.01
+LINE = re.compile(r"^\((\d+\.\d+)\) \S+ (413|412)#([0-9A-F]*)")
+
+
+def commands(folder):
+    """The commands of the bus log: (time, velocity, turn), in counts."""
+    found = []
+    for line in (folder / "bus.log").read_text().splitlines():
+        match = LINE.match(line)
+        if not match or match[2] != "413" or len(match[3]) < 8:
+            continue
+        words = [int(match[3][i:i + 4], 16) for i in (0, 4)]
+        found.append((float(match[1]), *(word - 0x10000 if word & 0x8000 else word for word in words)))
+    return found
+
+
+def marks(folder):
+    """(wall clock, seconds since boot, words) of every mark."""
+    found = []
+    for line in (folder / "marks.txt").read_text().splitlines():
+        wall, boot, *words = line.split()
+        found.append((float(wall), float(boot), words))
+    return found
+
+
+def base_states(folder):
+    path = folder / "base.txt"
+    if not path.exists():
+        return []
+    return [tuple(float(word) for word in line.split()) for line in path.read_text().splitlines()]
+
+
+def percentile(values, share):
+    ordered = sorted(values)
+    return ordered[min(len(ordered) - 1, int(share * len(ordered)))] if ordered else None
+
+
+class Report:
+    """Requirements with what was measured."""
+
+    def __init__(self):
+        self.rows = []
+
+    def add(self, quantity, measured, required, met):
+        self.rows.append({"quantity": quantity, "measured": measured, "required": required, "met": met})
+
+    def print(self, name):
+        width = max(len(row["quantity"]) for row in self.rows)
+        print(f"\n{name}")
+        for row in self.rows:
+            verdict = {True: "met", False: "NOT MET", None: ""}[row["met"]]
+            print(f"  {row['quantity']:<{width}}  {row['measured']!s:>24}  {row['required']:<34} {verdict}")
+
+    @property
+    def passed(self):
+        return all(row["met"] is not False for row in self.rows)
+
+
+# ---- faults
+
+def cycles_of(all_marks):
+    """The marks of each injected fault: (name, kind, {step: (wall, boot)})."""
+    found = []
+    for wall, boot, words in all_marks:
+        if len(words) != 3:
+            continue
+        name, kind, step = words
+        if step == "injected" or not found or found[-1][0] != name or "rearmed" in found[-1][2]:
+            found.append((name, kind, {}))
+        found[-1][2][step] = (wall, boot)
+    return found
+
+
+def judge_fault(name, kind, steps, sent, states):
+    """What one injection came to, and whether it was as required."""
+    if "injected" not in steps:
+        return {"fault": name, "kind": kind, "problem": next(iter(steps), "nothing"), "met": False}
+    begin = steps["injected"][0]
+    rearming = steps.get("rearming", (None,))[0] or float("inf")
+    own = [command for command in sent if command[1:] != FOREIGN]
+    moving = [t for t, v, w in own if begin <= t < rearming and (v or w)]
+    after = moving[-1] - begin if moving else 0.0
+    allowed = ZERO_WITHIN_S if kind == "lives" else SENT_BEFORE_DEATH_S
+    result = {"fault": name, "kind": kind, "last_motion_s": round(after, 4), "allowed_s": allowed,
+              "rearmed": "rearmed" in steps, "problem": next((step for step in steps if step.startswith("not-")), "")}
+    if "back" in steps:
+        result["back_s"] = round(steps["back"][0] - steps["ended"][0], 2)
+    result["met"] = after <= allowed and result["rearmed"]
+    if kind == "dies" and states:
+        judge_base(result, steps, after, states)
+    return result
+
+
+def judge_base(result, steps, after, states):
+    """The base goes on for 0.4 s after the last command, then slows down and stands."""
+    last = steps["injected"][1] + after
+    speed = next((abs(state[4]) for state in states if state[0] >= last), 0.0)
+    slows = next((state[0] - last for state in states if state[0] > last + 0.1 and abs(state[4]) < 0.8 * speed), None)
+    stands = next((state[0] - last for state in states if state[0] > last and abs(state[4]) < STANDS_MPS), None)
+    result |= {"base_speed_mps": round(speed, 3), "base_slows_s": slows and round(slows, 3), "base_stands_s": stands and round(stands, 3)}
+    result["met"] = result["met"] and stands is not None and stands <= BASE_STANDS_S
+
+
+def judge_faults(folder, report):
+    sent, states = commands(folder), base_states(folder)
+    results = [judge_fault(*cycle, sent, states) for cycle in cycles_of(marks(folder))]
+    for name in dict.fromkeys(result["fault"] for result in results):
+        own = [result for result in results if result["fault"] == name]
+        worst = max((result.get("last_motion_s", float("inf")) for result in own), default=None)
+        met = sum(result["met"] for result in own)
+        allowed = own[0].get("allowed_s", ZERO_WITHIN_S)
+        report.add(f"{name}: last motion after it", f"{worst:.3f} s", f"at most {allowed} s, {met} of {len(own)}", met == len(own))
+    report.add("faults injected", len(results), "at least one", bool(results))
+    return results
+
+
+# ---- timing
+
+def lateness(times):
+    """How late each command is on the grid of its control cycles: the earliest one defines the grid."""
+    if len(times) < 2:
+        return []
+    phases = []
+    for time in times:
+        cycle = round((time - times[0]) / MOTION_PERIOD_S)
+        phases.append(time - times[0] - cycle * MOTION_PERIOD_S)
+    earliest = percentile(phases, 0.01)
+    return [phase - earliest for phase in phases]
+
+
+def judge_timing(folder, scene, report):
+    at = {words[0]: (wall, boot) for wall, boot, words in marks(folder)}
+    begin, end = at["play"][0], at["end"][0]
+    times = [t for t, _, _ in commands(folder) if begin <= t <= end]
+    late = lateness(times)
+    gaps = [b - a for a, b in zip(times, times[1:])]
+    report.add("guest time played", f"{end - begin:.1f} s", "", None)
+    report.add("control cycles on the bus", len(times), f"{(end - begin) / MOTION_PERIOD_S:.0f} ± 2", abs(len(times) - (end - begin) / MOTION_PERIOD_S) <= 2)
+    worst = max(late, default=float("inf"))
+    report.add("worst lateness of the motion thread", f"{worst * 1e3:.3f} ms", "at most 1 ms", worst <= 1e-3)
+    report.add("p99 lateness of the motion thread", f"{(percentile(late, 0.99) or 0) * 1e3:.3f} ms", "", None)
+    report.add("longest gap between two commands", f"{max(gaps, default=0) * 1e3:.2f} ms", "", None)
+    judge_summary(folder, at, report)
+    judge_rows(folder, at, scene, report)
+    feeder = json.loads((folder / "feeder.json").read_text())
+    for part in ("images", "base"):
+        report.add(f"feeder, {part}: cost each", f"{feeder[part]['cpu_us_each']:.0f} us", "(taken from the robot's time)", None)
+        report.add(f"feeder, {part}: worst lateness", f"{feeder[part]['worst_lateness_us']:.0f} us", "", None)
+
+
+def judge_summary(folder, at, report):
+    summary = json.loads((folder / "summary.json").read_text())
+    frames = summary["frames"]
+    report.add("images", summary["images"], "", None)
+    report.add("images that took longer than a period (start included)", frames["late"], "0", frames["late"] == 0)
+    report.add("frames without an image (start included)", frames["without_image"], "0", frames["without_image"] == 0)
+    for name, stage in summary["stages"].items():
+        report.add(f"stage {name}: mean, p99, worst, overruns",
+                   f"{stage['mean_us']:.0f} {stage['p99_us']:.0f} {stage['worst_us']:.0f} us, {stage['overruns']}", f"budget {stage['budget_us']} us", None)
+
+
+def judge_rows(folder, at, scene, report):
+    rows = list(csv.DictReader((folder / "rows.csv").open()))
+    numbers = [int(row["frame"]) for row in rows]
+    gaps = sum(b - a - 1 for a, b in zip(numbers, numbers[1:]))
+    disorder = sum(b <= a for a, b in zip(numbers, numbers[1:]))
+    report.add("images out of order", disorder, "0", disorder == 0)
+    report.add("images lost", gaps, "0", gaps == 0)
+    first = next((float(row["stamp_s"]) for row in rows if row["found"] == "1"), None)
+    report.add("boot to the first tracked image", f"{first:.1f} s" if first else "never", "at most 20 s", first is not None and first <= 20.0)
+    found = sum(row["found"] == "1" for row in rows)
+    report.add("object found", f"{found} of {len(rows)} images", "", None)
+    reference = scene and scene / "rows.csv"
+    if reference and reference.exists():
+        wanted = list(csv.DictReader(reference.open()))
+        share = sum(row["found"] == "1" for row in wanted) / max(1, len(wanted))
+        report.add("object found in the lock-step run", f"{100 * share:.0f} % of its images", "", None)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("name")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--job-code", type=int, default=0)
+    parser.add_argument("--scene", type=pathlib.Path)
+    options = parser.parse_args()
+    report = Report()
+    report.add("exit code of the job", options.job_code, "0", options.job_code == 0)
+    result = {"run": options.name}
+    try:
+        if (options.folder / "marks.txt").exists():
+            if any(words[0] == "play" for _, _, words in marks(options.folder)):
+                judge_timing(options.folder, options.scene, report)
+            elif options.name != "devices":
+                result["faults"] = judge_faults(options.folder, report)
+        elif options.name != "devices":
+            report.add("marks of the job", "none", "some", False)
+    except (OSError, KeyError, ValueError) as problem:
+        report.add("evaluation", f"{type(problem).__name__}: {problem}", "complete", False)
+    result["requirements"] = report.rows
+    result["passed"] = report.passed
+    (options.folder / "result.json").write_text(json.dumps(result, indent=1) + "\n")
+    report.print(options.name)
+    return 0 if report.passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Tests of the judge: it must see what a robot does wrong."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+JUDGE = pathlib.Path(__file__).with_name("evaluate.py")
+DRIVES, STANDS, FOREIGN = "0064000000000000", "0000000000000000", "0007000000000000"
+
+
+class Judge(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+
+    def judge(self, commands, marks, base=()):
+        (self.path / "bus.log").write_text("".join(f"({1000 + t:.6f}) can0 413#{data}\n" for t, data in commands))
+        (self.path / "marks.txt").write_text("".join(f"{1000 + t:.6f} {t:.2f} {words}\n" for t, words in marks))
+        if base:
+            (self.path / "base.txt").write_text("".join(f"{t:.3f} 0 0 0 {v:.3f} 0\n" for t, v in base))
+        run = subprocess.run([sys.executable, JUDGE, "faults", self.path], capture_output=True, text=True, check=False)
+        return run.returncode == 0, json.loads((self.path / "result.json").read_text())["faults"]
+
+    @staticmethod
+    def steps(name, kind):
+        return [(1.0, f"{name} {kind} injected"), (2.0, f"{name} {kind} ended"), (2.5, f"{name} {kind} back"),
+                (4.0, f"{name} {kind} rearming"), (5.0, f"{name} {kind} rearmed")]
+
+    @staticmethod
+    def drive_until(last, again=4.5, foreign=()):
+        commands = [(i / 100, DRIVES if i / 100 <= last or i / 100 > again else STANDS) for i in range(600)]
+        return sorted(commands + [(t, FOREIGN) for t in foreign])
+
+    def test_stopping_in_time_passes(self):
+        passed, faults = self.judge(self.drive_until(1.12), self.steps("bus_down", "lives"))
+        self.assertTrue(passed)
+        self.assertAlmostEqual(faults[0]["last_motion_s"], 0.12, places=3)
+
+    def test_stopping_late_fails(self):
+        self.assertFalse(self.judge(self.drive_until(1.25), self.steps("bus_down", "lives"))[0])
+
+    def test_motion_before_it_is_armed_again_fails(self):
+        self.assertFalse(self.judge(self.drive_until(1.1, again=3.0), self.steps("bus_down", "lives"))[0])
+
+    def test_a_dead_process_may_not_command(self):
+        self.assertFalse(self.judge(self.drive_until(1.1), self.steps("killed", "dies"))[0])
+
+    def test_commands_of_the_second_commander_do_not_count(self):
+        self.assertTrue(self.judge(self.drive_until(1.1, foreign=(1.5, 1.7)), self.steps("second_commander", "lives"))[0])
+
+    def test_a_base_that_does_not_stand_fails(self):
+        steps, commands = self.steps("killed", "dies"), self.drive_until(1.0)
+        moves = [(i / 100, 0.3) for i in range(600)]
+        stops = [(i / 100, 0.3 if i / 100 < 1.45 else 0.0) for i in range(600)]
+        self.assertFalse(self.judge(commands, steps, moves)[0])
+        self.assertTrue(self.judge(commands, steps, stops)[0])
+
+    def test_a_fault_that_did_not_come_back_fails(self):
+        steps = [*self.steps("bus_down", "lives")[:2], (42.0, "bus_down lives not-back")]
+        self.assertFalse(self.judge(self.drive_until(1.1, again=100.0), steps)[0])
+
+    def test_nothing_injected_fails(self):
+        self.assertFalse(self.judge(self.drive_until(1.1), [(0.5, "ready")])[0])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "platform/error.h"
+#include "platform/time.h"
+
+namespace cgsr::hil {
+
+/// What the images are and where they go.
+struct ImageFeed {
+  std::string file;       ///< images one after another, YUYV without padding.
+  std::size_t count = 0;  ///< of the images; 0: as many as the file holds.
+  std::string device;     ///< a video output: vivid's, or v4l2loopback's.
+  int width_px = 640;
+  int height_px = 480;
+
+  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(width_px * height_px) * 2; }
+};
+
+/// Writes images into a video output, from memory that was filled before.
+///
+/// Threads: one at a time.
+class ImageFeeder {
+ public:
+  explicit ImageFeeder(ImageFeed feed) : feed_(std::move(feed)) {}
+  ~ImageFeeder() { close(); }
+  ImageFeeder(const ImageFeeder&) = delete;
+  ImageFeeder& operator=(const ImageFeeder&) = delete;
+
+  /// Maps the file into memory; with `whole`, reads all of it, so that later nothing waits for a disk.
+  Result<void> load(bool whole);
+  Result<void> load_rest() { return load(true); }
+
+  /// Opens the device and sets the format. \return what is wrong, also while the device is away.
+  Result<void> open();
+  void close();
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+
+  /// Writes an image; may wait for the device. \return false: the device is gone and has been closed.
+  bool write(std::size_t image);
+
+  [[nodiscard]] std::size_t images() const { return images_; }
+
+ private:
+  ImageFeed feed_;
+  int fd_ = -1;
+  const std::uint8_t* data_ = nullptr;
+  std::size_t images_ = 0;
+};
+
+}  // namespace cgsr::hil

@@ -1,0 +1,12 @@
+# kill -9 and SIGSTOP at random moments of a robot in motion.
+. /hil/library
+. /hil/faults
+RANDOM=20261125
+within 60 ready || { say "the service is not ready"; exit 3; }
+failures=0
+for ((round = 1; round <= ${REPEAT:-10}; ++round)); do
+  sleep "0.$((RANDOM % 900 + 100))"
+  if ((RANDOM % 2)); then fault killed dies 1; else fault hung dies 5; fi || failures=$((failures + 1))
+  say "round $round, $failures failed"
+done
+exit $failures
