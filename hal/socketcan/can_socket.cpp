@@ -13,6 +13,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -42,6 +43,12 @@ MonoTime to_monotonic(const timespec& wall) {
 template <class Value>
 int set_option(int fd, int level, int option, const Value& value) {
   return setsockopt(fd, level, option, &value, sizeof(value));
+}
+
+/// libsocketcan complains on stderr of an interface without a controller (vcan): such a one is not asked.
+bool has_controller(const std::string& interface) {
+  std::error_code ignored;
+  return std::filesystem::exists("/sys/class/net/" + interface + "/device", ignored);
 }
 
 /// \return the option that was refused, or null.
@@ -113,6 +120,7 @@ class KernelCanSocket final : public CanSocket {
 
   LinkReport report(const std::string& interface) override {
     LinkReport link;
+    if (!has_controller(interface)) return link;
     link.known = can_get_state(interface.c_str(), &link.can_state) == 0;
     can_bittiming timing{};
     if (link.known && can_get_bittiming(interface.c_str(), &timing) == 0) link.bit_rate = timing.bitrate;

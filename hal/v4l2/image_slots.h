@@ -33,6 +33,9 @@ class ImageSlots final : public ImageLender {
     return back;
   }
 
+  /// \return whether a reader has the slot, or had it until after the last take_returned(). For the capture side.
+  [[nodiscard]] bool on_lease(int slot) const { return (on_lease_.load(std::memory_order_relaxed) & bit(slot)) != 0; }
+
   /// The capture side waits for a slot from now on, or no longer.
   void set_starving(bool starving) { starving_.store(starving, std::memory_order_seq_cst); }
 

@@ -70,6 +70,16 @@ std::string V4l2Camera::name() const {
   return fmt::format("camera '{}'", parameters_.device);
 }
 
+std::string V4l2Camera::without_name(const std::string& message) const {
+  const std::string prefix = name() + ": ";
+  return message.rfind(prefix, 0) == 0 ? message.substr(prefix.size()) : message;
+}
+
+/// Who may have the device that is busy: the kernel keeps one whose memory is mapped, closed or not.
+const char* V4l2Camera::user() const {
+  return retired_.empty() ? ": another program uses the camera" : ": images of it are on lease";
+}
+
 // ---- opening ------------------------------------------------------------------------------------------------------------
 
 Result<CameraMode> V4l2Camera::start() {
@@ -132,8 +142,8 @@ Result<CameraMode> V4l2Camera::set_format() {
   format.fmt.pix.pixelformat = fourcc_of(parameters_.format);
   format.fmt.pix.field = V4L2_FIELD_NONE;
   if (const int error = device_->control(VIDIOC_S_FMT, &format); error != 0) {
-    return fail(fmt::format("{}: setting the format failed ({}){}", name(), words(error),
-                            error == EBUSY ? ": another program uses the camera" : ""));
+    return fail(
+        fmt::format("{}: setting the format failed ({}){}", name(), words(error), error == EBUSY ? user() : ""));
   }
   const auto& got = format.fmt.pix;
   if (got.pixelformat != fourcc_of(parameters_.format) || static_cast<int>(got.width) != parameters_.width_px ||
@@ -177,8 +187,7 @@ Result<void> V4l2Camera::make_buffers() {
   request.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   request.memory = V4L2_MEMORY_MMAP;
   if (const int error = device_->control(VIDIOC_REQBUFS, &request); error != 0) {
-    return fail(fmt::format("{}: no buffers ({}){}", name(), words(error),
-                            error == EBUSY ? ": another program streams from it" : ""));
+    return fail(fmt::format("{}: no buffers ({}){}", name(), words(error), error == EBUSY ? user() : ""));
   }
   if (request.count < 2 || request.count > 32) {
     return fail(
@@ -204,9 +213,14 @@ Result<void> V4l2Camera::make_buffers() {
   return {};
 }
 
+/// Queues every buffer that no reader has, and starts.
 Result<void> V4l2Camera::stream_on() {
   queued_ = 0;
+  const bool mapped_are_lent = parameters_.format == StreamFormat::kYuyv;
+  const std::uint32_t back = buffers_->slots.take_returned();
+  if (!mapped_are_lent) buffers_->free_decoded |= back;
   for (int i = 0; i < static_cast<int>(buffers_->mapped.size()); ++i) {
+    if (mapped_are_lent && buffers_->slots.on_lease(i)) continue;
     if (const int error = queue(i); error != 0) {
       return fail(fmt::format("{}: buffer {} cannot be queued ({})", name(), i, words(error)));
     }
@@ -224,18 +238,21 @@ Result<void> V4l2Camera::stream_on() {
   return {};
 }
 
-void V4l2Camera::close_device() {
-  if (buffers_) {
-    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    (void)device_->control(VIDIOC_STREAMOFF, &type);
-  }
-  device_->close();
-  retire_buffers();
+void V4l2Camera::stream_off() {
+  int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  (void)device_->control(VIDIOC_STREAMOFF, &type);
 }
 
-/// Memory that is on lease stays mapped until its leases have ended.
-void V4l2Camera::retire_buffers() {
+void V4l2Camera::close_device() {
+  if (buffers_) stream_off();
+  device_->close();
   if (buffers_) retired_.push_back(std::move(buffers_));
+  unmap_what_came_back();
+}
+
+/// Memory that is on lease stays mapped until its leases have ended, and no longer: while it is, the kernel keeps the device, which then can
+/// neither be set up anew nor, when it was unplugged, come back under its number.
+void V4l2Camera::unmap_what_came_back() {
   std::erase_if(retired_, [](const auto& old) { return !old->slots.any_on_lease(); });
 }
 
@@ -286,7 +303,11 @@ std::optional<tl::expected<ImageLease, CaptureFailure>> V4l2Camera::look(MonoTim
   if (met.event) {
     v4l2_event event{};
     if (device_->control(VIDIOC_DQEVENT, &event) == 0 && event.type == V4L2_EVENT_SOURCE_CHANGE) {
-      restart_stream("the driver reports a change of its source");
+      if (format_stands()) {
+        restart_stream("the driver reports a change of its source");
+      } else {
+        lose("its source has another format now");
+      }
       return std::nullopt;
     }
   }
@@ -436,9 +457,18 @@ void V4l2Camera::restart_stream(const std::string& why) {
   remember(fmt::format("{}: {}; the stream is started again", name(), why));
   if (++restarts_in_a_row_ > kMaxRestartsInARow)
     return lose("it does not deliver images, however often it is restarted");
-  // All buffers are needed, and some are on lease: new ones.
-  close_device();
-  if (auto mode = open_device(); !mode) lose(mode.error().message);
+  // The buffers stay, also those that are on lease: a device whose memory is mapped cannot be set up anew.
+  stream_off();
+  if (auto streams = stream_on(); !streams) lose(without_name(streams.error().message));
+}
+
+/// \return whether the camera still sends what was agreed.
+bool V4l2Camera::format_stands() {
+  v4l2_format format{};
+  format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  const auto& pix = format.fmt.pix;
+  return device_->control(VIDIOC_G_FMT, &format) == 0 && pix.pixelformat == fourcc_of(parameters_.format) &&
+         static_cast<int>(pix.width) == parameters_.width_px && static_cast<int>(pix.height) == parameters_.height_px;
 }
 
 void V4l2Camera::lose(const std::string& why) {
@@ -450,6 +480,7 @@ void V4l2Camera::lose(const std::string& why) {
 }
 
 void V4l2Camera::look_for_it(MonoTime give_up_at) {
+  unmap_what_came_back();
   if (device_->now() < look_at_) {
     (void)device_->wait(std::min(give_up_at, look_at_), false);
     return;
@@ -463,7 +494,7 @@ void V4l2Camera::look_for_it(MonoTime give_up_at) {
   }
   if (mode) close_device();
   remember(fmt::format("{}: gone for {:.1f} s ({})", name(), to_seconds(device_->now() - gone_since_),
-                       mode ? "it came back with another rate" : mode.error().message));
+                       mode ? "it came back with another rate" : without_name(mode.error().message)));
 }
 
 void V4l2Camera::remember(std::string problem) {

@@ -92,8 +92,9 @@ class V4l2Camera final : public Camera {
   Result<Duration> set_rate();
   Result<void> make_buffers();
   Result<void> stream_on();
+  void stream_off();
   void close_device();
-  void retire_buffers();
+  void unmap_what_came_back();
 
   tl::expected<ImageLease, CaptureFailure> take_image(MonoTime give_up_at);
   std::optional<tl::expected<ImageLease, CaptureFailure>> look(MonoTime give_up_at);
@@ -105,11 +106,14 @@ class V4l2Camera final : public Camera {
   [[nodiscard]] MonoTime stamp_of(std::uint32_t flags, MonoTime driver_stamp);
   std::uint64_t count_sequence(std::uint32_t driver_sequence);
   void restart_stream(const std::string& why);
+  [[nodiscard]] bool format_stands();
   void lose(const std::string& why);
   void look_for_it(MonoTime give_up_at);
   void check_controls();
   void remember(std::string problem);
   [[nodiscard]] std::string name() const;
+  [[nodiscard]] std::string without_name(const std::string& message) const;
+  [[nodiscard]] const char* user() const;
 
   const V4l2Parameters parameters_;
   const std::unique_ptr<VideoDevice> device_;

@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@
 namespace cgsr::test {
 
 /// A kernel with one camera, as a script sets it. It delivers an image every period of real time into the oldest queued
-/// buffer; image i is filled with the byte i. Its lock is held by every call. It must outlive its devices.
+/// buffer; image i is filled with the byte i. Its lock is held by every call. It must outlive its devices. As in the kernel, a mapping keeps
+/// the device and its queue, closed or not, until the camera is unplugged.
 struct ScriptedVideo {
   struct Control {
     std::int32_t minimum = 0, maximum = 0, value = 0;
@@ -44,10 +46,12 @@ struct ScriptedVideo {
   // What goes wrong.
   std::atomic<bool> plugged{true};
   std::atomic<bool> stalled{false};
-  std::atomic<int> flag_next{0};      ///< so many images are delivered flagged.
-  std::atomic<int> short_next{0};     ///< so many images are cut in half.
-  std::atomic<int> skip_next{0};      ///< so many images are lost in the driver.
-  std::atomic<int> dequeue_error{0};  ///< answered once.
+  std::atomic<int> flag_next{0};            ///< so many images are delivered flagged.
+  std::atomic<int> short_next{0};           ///< so many images are cut in half.
+  std::atomic<int> skip_next{0};            ///< so many images are lost in the driver.
+  std::atomic<int> dequeue_error{0};        ///< answered once.
+  std::atomic<bool> source_changed{false};  ///< an event, answered once.
+  std::atomic<bool> used_by_another{false};
   std::atomic<int> opened{0};
   std::atomic<int> mapped{0};
 
@@ -56,6 +60,7 @@ struct ScriptedVideo {
   std::condition_variable changed;
   RealClock clock;
   std::vector<std::shared_ptr<std::vector<std::uint8_t>>> memory;
+  std::set<const std::uint8_t*> mapped_here;  ///< of the device as it is plugged in now.
   std::deque<int> queued;
   std::deque<v4l2_buffer> filled;
   std::uint32_t pixel_format = 0;
@@ -150,6 +155,7 @@ inline int ScriptedVideo::enumerate(unsigned long request, void* argument) {
 
 inline int ScriptedVideo::stream(unsigned long request, void* argument) {
   if (request == VIDIOC_REQBUFS) {
+    if (used_by_another || !mapped_here.empty()) return EBUSY;
     auto& wanted = *static_cast<v4l2_requestbuffers*>(argument);
     memory.clear();
     for (std::uint32_t i = 0; i < wanted.count; ++i)
@@ -190,7 +196,10 @@ inline int ScriptedVideo::stream(unsigned long request, void* argument) {
 
 inline int ScriptedVideo::control(unsigned long request, void* argument) {
   const std::lock_guard lock(mutex);
-  if (!plugged) return ENODEV;
+  if (!plugged) {
+    mapped_here.clear();
+    return ENODEV;
+  }
   switch (request) {
     case VIDIOC_QUERYCAP: {
       auto& facts = *static_cast<v4l2_capability*>(argument);
@@ -199,7 +208,21 @@ inline int ScriptedVideo::control(unsigned long request, void* argument) {
       facts.capabilities = capabilities;
       return 0;
     }
+    case VIDIOC_DQEVENT:
+      if (!source_changed.exchange(false)) return ENOENT;
+      static_cast<v4l2_event*>(argument)->type = V4L2_EVENT_SOURCE_CHANGE;
+      return 0;
+    case VIDIOC_SUBSCRIBE_EVENT:
+      return 0;
+    case VIDIOC_G_FMT: {
+      auto& pix = static_cast<v4l2_format*>(argument)->fmt.pix;
+      pix.pixelformat = pixel_format;
+      pix.width = static_cast<std::uint32_t>(width_px);
+      pix.height = static_cast<std::uint32_t>(height_px);
+      return 0;
+    }
     case VIDIOC_S_FMT: {
+      if (used_by_another || !mapped_here.empty()) return EBUSY;
       auto& pix = static_cast<v4l2_format*>(argument)->fmt.pix;
       if (std::find(formats.begin(), formats.end(), pix.pixelformat) == formats.end())
         pix.pixelformat = formats.front();
@@ -268,12 +291,14 @@ class ScriptedVideoDevice final : public hal::v4l2::VideoDevice {
     const std::lock_guard lock(kernel_.mutex);
     ++kernel_.mapped;
     at = kernel_.memory[offset]->data();
+    kernel_.mapped_here.insert(at);
     kept_[at] = kernel_.memory[offset];  // as a mapping keeps its pages
     return 0;
   }
   void unmap(std::uint8_t* at, std::size_t) override {
     const std::lock_guard lock(kernel_.mutex);
     --kernel_.mapped;
+    kernel_.mapped_here.erase(at);
     kept_.erase(at);
   }
 
@@ -286,9 +311,10 @@ class ScriptedVideoDevice final : public hal::v4l2::VideoDevice {
         kernel_.deliver_due();
         met.image = !kernel_.filled.empty();
         met.error = !kernel_.plugged;
+        met.event = kernel_.source_changed;
       }
       const MonoTime now = kernel_.clock.now();
-      if (met.woken || met.image || met.error || now >= give_up_at) return met;
+      if (met.woken || met.image || met.event || met.error || now >= give_up_at) return met;
       kernel_.changed.wait_for(lock, std::min<Duration>(give_up_at - now, std::chrono::milliseconds(1)));
     }
   }

@@ -280,6 +280,64 @@ TEST_F(V4l2Fault, AnErrorOfTheDriverStartsTheStreamAgain) {
   EXPECT_EQ(camera->counters().restarts, 1U);
 }
 
+// A driver may say so at any time, and a reader may have every image but one: the stream goes on at once, and what is on lease stays as it is.
+TEST_F(V4l2Fault, AChangeOfTheSourceStartsTheStreamAgainUnderReaders) {
+  use(small());
+  ASSERT_TRUE(camera->start());
+  std::vector<ImageLease> kept;
+  for (int i = 0; i + 1 < small().buffers; ++i) {
+    auto image = next();
+    ASSERT_TRUE(image);
+    kept.push_back(std::move(*image));
+  }
+  const auto pixels = copy_of(kept.front().view());
+  kernel.source_changed = true;
+  const MonoTime changed = kernel.clock.now();
+  ASSERT_TRUE(image_within(1.0)) << camera->last_problem();
+  EXPECT_LT(to_seconds(kernel.clock.now() - changed), 0.2);
+  EXPECT_EQ(camera->counters().restarts, 1U);
+  EXPECT_EQ(kernel.opened, 1);
+  EXPECT_EQ(copy_of(kept.front().view()), pixels);
+  kept.clear();
+  for (int i = 0; i < 2 * small().buffers; ++i) ASSERT_TRUE(next()) << "buffers were lost in the restart";
+}
+
+TEST_F(V4l2Fault, ASourceOfAnotherFormatIsNamedAndWaitedFor) {
+  use(small());
+  ASSERT_TRUE(camera->start());
+  ASSERT_TRUE(next());
+  kernel.width_px = 2 * kWidth_px;
+  kernel.source_changed = true;
+  (void)next(0.02);
+  EXPECT_NE(camera->last_problem().find("another format"), std::string::npos) << camera->last_problem();
+  kernel.width_px = kWidth_px;
+  EXPECT_TRUE(image_within(1.0)) << camera->last_problem();
+}
+
+// The kernel keeps a device that is unplugged, and its number, as long as its memory is mapped.
+TEST_F(V4l2Fault, MemoryOfACameraThatIsGoneIsUnmappedOnceItsReadersAreDone) {
+  use(small());
+  ASSERT_TRUE(camera->start());
+  {
+    const auto kept = next();
+    ASSERT_TRUE(kept);
+    kernel.plugged = false;
+    (void)next(0.05);
+    EXPECT_EQ(kernel.mapped, small().buffers);
+  }
+  (void)next(0.05);
+  EXPECT_EQ(kernel.mapped, 0);
+}
+
+TEST_F(V4l2Fault, SaysWhoHasTheCameraThatIsBusy) {
+  use(small());
+  kernel.used_by_another = true;
+  const auto started = camera->start();
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().message.find("another program uses the camera"), std::string::npos)
+      << started.error().message;
+}
+
 TEST_F(V4l2Fault, MemoryOfOldStreamsIsGivenBack) {
   use(small());
   ASSERT_TRUE(camera->start());
