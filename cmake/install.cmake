@@ -51,7 +51,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME cgsr)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_CONTACT "CGSR-Vision maintainers <root@localhost>")
+set(CPACK_PACKAGE_CONTACT "CGSR-Vision maintainers <maintainers@cgsr-vision.invalid>")
 set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_SET_DESTDIR ON)  # /etc lies outside the prefix
 set(CPACK_STRIP_FILES ON)
