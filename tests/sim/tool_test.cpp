@@ -211,7 +211,7 @@ TEST_F(SimToolFault, WorldsThatCannotBeAreRefused) {
 }
 
 TEST_F(SimToolFault, PlacesThatCannotBeWrittenAreNamed) {
-  EXPECT_THAT(render({}, "nowhere/out.png").errors, HasSubstr("there is no such folder"));
+  EXPECT_THAT(render({}, "nowhere/out.png").errors, HasSubstr("cannot be written: No such file or directory"));
   EXPECT_THAT(render({}, "out.jpg").errors, HasSubstr("pictures are written as .png"));
   app::testing::write_text(scratch_ / "file", "in the way");
   EXPECT_THAT(render({"--truth", scratch_ / "file"}).errors, HasSubstr("file"));
