@@ -23,7 +23,9 @@ class FaultyBus final : public hal::CanBus {
 
   tl::expected<void, hal::CanSendFailure> send(const CanFrame& frame) override {
     if (faults_.silent) return {};
-    if (!faults_.emergency_stop || frame.id != static_cast<std::uint16_t>(MessageId::kStatus)) return bus_->send(frame);
+    if (faults_.powered_off)
+      return frame.id == kStatus ? bus_->send(powered_off()) : tl::expected<void, hal::CanSendFailure>{};
+    if (!faults_.emergency_stop || frame.id != kStatus) return bus_->send(frame);
     // Status word 2 is the third big-endian word: both sides report the emergency stop; word 1: the motors are off.
     CanFrame changed = frame;
     changed.data[3] = static_cast<std::uint8_t>(changed.data[3] & ~hal::rmp::word1::kMotorsEnabled);
@@ -34,7 +36,7 @@ class FaultyBus final : public hal::CanBus {
 
   std::size_t receive(MonoTime until, std::span<CanFrame> into) override {
     const std::size_t count = bus_->receive(until, into);
-    return faults_.emergency_stop ? 0 : count;
+    return faults_.emergency_stop || faults_.powered_off ? 0 : count;
   }
 
   [[nodiscard]] hal::CanState state() const override { return bus_->state(); }
@@ -42,6 +44,17 @@ class FaultyBus final : public hal::CanBus {
   void stop() override { bus_->stop(); }
 
  private:
+  static constexpr auto kStatus = static_cast<std::uint16_t>(MessageId::kStatus);
+
+  /// What the box of the user interface sends while the base has no power, its battery in the third word.
+  static CanFrame powered_off() {
+    CanFrame frame;
+    frame.id = static_cast<std::uint16_t>(MessageId::kShutdown);
+    frame.size = 8;
+    frame.data = {0, 0, 0, 0, 0x01, 0x8A, 0, 0};
+    return frame;
+  }
+
   std::unique_ptr<hal::CanBus> bus_;
   const BaseFaults& faults_;
 };

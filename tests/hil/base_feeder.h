@@ -15,6 +15,7 @@ namespace cgsr::hil {
 struct BaseFaults {
   bool silent = false;          ///< what it sends is lost; it hears everything.
   bool emergency_stop = false;  ///< it says so and obeys nothing.
+  bool powered_off = false;     ///< its box alone is on and says so; nothing obeys.
 };
 
 /// The simulated Segway on a CAN interface of this computer. What it did is kept in memory and written at the end.

@@ -15,33 +15,57 @@ import sys
 
 ZERO_WITHIN_S = 0.2        # while the process lives: from the injection to the last command that is not zero
 SENT_BEFORE_DEATH_S = 0.02  # two control cycles: what was on its way when the process was killed
+MOVING_BEFORE_S = 0.1       # a fault that meets a robot at rest shows nothing
 BASE_WAITS_S = 0.4         # the simulated base goes on after the last command for this time
 BASE_STANDS_S = 2.0        # and stands after this one
 STANDS_MPS = 0.02
 FOREIGN = (7, 0)           # what the second commander sends
 MOTION_PERIOD_S = 0.01
+CLOCK_STEP_S = 60.0         # what a wall clock does not do by itself between two lines
 LINE = re.compile(r"^\((\d+\.\d+)\) \S+ (413|412)#([0-9A-F]*)")
 
 
-def commands(folder):
-    """The commands of the bus log: (time, velocity, turn), in counts."""
-    found = []
-    for line in (folder / "bus.log").read_text().splitlines():
-        match = LINE.match(line)
-        if not match or match[2] != "413" or len(match[3]) < 8:
-            continue
-        words = [int(match[3][i:i + 4], 16) for i in (0, 4)]
-        found.append((float(match[1]), *(word - 0x10000 if word & 0x8000 else word for word in words)))
+def steady(times):
+    """Takes the steps out of a wall clock that somebody sets: one of more than a minute, either way, counts as a control cycle."""
+    shift, before, found = 0.0, None, []
+    for time in times:
+        if before is not None and abs(time - before) > CLOCK_STEP_S:
+            shift += time - before - MOTION_PERIOD_S
+        before = time
+        found.append(time - shift)
     return found
 
 
-def marks(folder):
-    """(wall clock, seconds since boot, words) of every mark."""
+def read_marks(folder):
+    """(seconds since boot, words) of every mark, and the wall clock at boot. The kernel tells the time since boot in hundredths, rounded down:
+    the smallest difference to the wall clock is the best, until somebody sets that one."""
     found = []
     for line in (folder / "marks.txt").read_text().splitlines():
         wall, boot, *words = line.split()
         found.append((float(wall), float(boot), words))
-    return found
+    if not found:
+        return [], 0.0
+    first = found[0][0] - found[0][1]
+    zero = min(wall - boot for wall, boot, _ in found if abs(wall - boot - first) < CLOCK_STEP_S)
+    return [(wall - zero if abs(wall - boot - zero) < CLOCK_STEP_S else boot, words) for wall, boot, words in found], zero
+
+
+def marks(folder):
+    return read_marks(folder)[0]
+
+
+def commands(folder):
+    """The commands of the bus log: (seconds since boot, velocity, turn), in counts."""
+    times, values = [], []
+    for line in (folder / "bus.log").read_text().splitlines():
+        match = LINE.match(line)
+        if not match or match[2] != "413" or len(match[3]) < 8:
+            continue
+        words = [int(match[3][k:k + 4], 16) for k in (0, 4)]
+        times.append(float(match[1]))
+        values.append(tuple(word - 0x10000 if word & 0x8000 else word for word in words))
+    zero = read_marks(folder)[1]
+    return [(time - zero, *value) for time, value in zip(steady(times), values)]
 
 
 def base_states(folder):
@@ -80,15 +104,15 @@ class Report:
 # ---- faults
 
 def cycles_of(all_marks):
-    """The marks of each injected fault: (name, kind, {step: (wall, boot)})."""
+    """The marks of each injected fault: (name, kind, {step: seconds since boot})."""
     found = []
-    for wall, boot, words in all_marks:
+    for time, words in all_marks:
         if len(words) != 3:
             continue
         name, kind, step = words
         if step == "injected" or not found or found[-1][0] != name or "rearmed" in found[-1][2]:
             found.append((name, kind, {}))
-        found[-1][2][step] = (wall, boot)
+        found[-1][2][step] = time
     return found
 
 
@@ -96,17 +120,20 @@ def judge_fault(name, kind, steps, sent, states):
     """What one injection came to, and whether it was as required."""
     if "injected" not in steps:
         return {"fault": name, "kind": kind, "problem": next(iter(steps), "nothing"), "met": False}
-    begin = steps["injected"][0]
-    rearming = steps.get("rearming", (None,))[0] or float("inf")
+    begin = steps["injected"]
+    rearming = steps.get("rearming", float("inf"))
     own = [command for command in sent if command[1:] != FOREIGN]
+    driving = any((v or w) and begin - MOVING_BEFORE_S <= t <= begin for t, v, w in own)
     moving = [t for t, v, w in own if begin <= t < rearming and (v or w)]
     after = moving[-1] - begin if moving else 0.0
     allowed = ZERO_WITHIN_S if kind == "lives" else SENT_BEFORE_DEATH_S
     result = {"fault": name, "kind": kind, "last_motion_s": round(after, 4), "allowed_s": allowed,
               "rearmed": "rearmed" in steps, "problem": next((step for step in steps if step.startswith("not-")), "")}
     if "back" in steps:
-        result["back_s"] = round(steps["back"][0] - steps["ended"][0], 2)
-    result["met"] = after <= allowed and result["rearmed"]
+        result["back_s"] = round(steps["back"] - steps["ended"], 2)
+    if not driving:
+        result["problem"] = "not in motion when it was injected"
+    result["met"] = driving and after <= allowed and result["rearmed"]
     if kind == "dies" and states:
         judge_base(result, steps, after, states)
     return result
@@ -114,7 +141,7 @@ def judge_fault(name, kind, steps, sent, states):
 
 def judge_base(result, steps, after, states):
     """The base goes on for 0.4 s after the last command, then slows down and stands."""
-    last = steps["injected"][1] + after
+    last = steps["injected"] + after
     speed = next((abs(state[4]) for state in states if state[0] >= last), 0.0)
     slows = next((state[0] - last for state in states if state[0] > last + 0.1 and abs(state[4]) < 0.8 * speed), None)
     stands = next((state[0] - last for state in states if state[0] > last and abs(state[4]) < STANDS_MPS), None)
@@ -150,8 +177,8 @@ def lateness(times):
 
 
 def judge_timing(folder, scene, report):
-    at = {words[0]: (wall, boot) for wall, boot, words in marks(folder)}
-    begin, end = at["play"][0], at["end"][0]
+    at = {words[0]: time for time, words in marks(folder)}
+    begin, end = at["play"], at["end"]
     times = [t for t, _, _ in commands(folder) if begin <= t <= end]
     late = lateness(times)
     gaps = [b - a for a, b in zip(times, times[1:])]
@@ -210,7 +237,7 @@ def main():
     result = {"run": options.name}
     try:
         if (options.folder / "marks.txt").exists():
-            if any(words[0] == "play" for _, _, words in marks(options.folder)):
+            if any(words[0] == "play" for _, words in marks(options.folder)):
                 judge_timing(options.folder, options.scene, report)
             elif options.name != "devices":
                 result["faults"] = judge_faults(options.folder, report)

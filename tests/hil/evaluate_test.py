@@ -17,9 +17,9 @@ class Judge(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
         self.path = pathlib.Path(self.folder.name)
 
-    def judge(self, commands, marks, base=()):
+    def judge(self, commands, marks, base=(), wall=lambda t: t):
         (self.path / "bus.log").write_text("".join(f"({1000 + t:.6f}) can0 413#{data}\n" for t, data in commands))
-        (self.path / "marks.txt").write_text("".join(f"{1000 + t:.6f} {t:.2f} {words}\n" for t, words in marks))
+        (self.path / "marks.txt").write_text("".join(f"{1000 + wall(t):.6f} {t:.2f} {words}\n" for t, words in marks))
         if base:
             (self.path / "base.txt").write_text("".join(f"{t:.3f} 0 0 0 {v:.3f} 0\n" for t, v in base))
         run = subprocess.run([sys.executable, JUDGE, "faults", self.path], capture_output=True, text=True, check=False)
@@ -62,6 +62,18 @@ class Judge(unittest.TestCase):
     def test_a_fault_that_did_not_come_back_fails(self):
         steps = [*self.steps("bus_down", "lives")[:2], (42.0, "bus_down lives not-back")]
         self.assertFalse(self.judge(self.drive_until(1.1, again=100.0), steps)[0])
+
+    def test_a_robot_at_rest_shows_nothing(self):
+        passed, faults = self.judge(self.drive_until(0.5), self.steps("bus_down", "lives"))
+        self.assertFalse(passed)
+        self.assertIn("not in motion", faults[0]["problem"])
+
+    def test_a_wall_clock_that_is_set_changes_nothing(self):
+        def wall(t):
+            return t + (3600.0 if 1.0 <= t < 2.0 else 0.0)
+        for last, right in ((1.12, True), (1.25, False)):
+            commands = [(wall(t), data) for t, data in self.drive_until(last)]
+            self.assertEqual(self.judge(commands, [(0.5, "ready"), *self.steps("clock_step", "lives")], wall=wall)[0], right)
 
     def test_nothing_injected_fails(self):
         self.assertFalse(self.judge(self.drive_until(1.1), [(0.5, "ready")])[0])

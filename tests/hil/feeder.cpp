@@ -2,7 +2,7 @@
 // switch on a line of gpio-sim. Runs in the guest beside the service (docs/hil.md).
 //
 // The first image stands until the file `play` appears in the control folder; then the images follow at their rate and the switch is pressed when
-// it is due. Files of the names `silent`, `estop` and `frozen` in that folder are faults as long as they exist. SIGTERM ends it: only then
+// it is due. Files of the names `silent`, `estop` and `poweroff` in that folder are faults as long as they exist. SIGTERM ends it: only then
 // it writes what it did and what it cost.
 #include <pthread.h>
 #include <sys/mman.h>
@@ -49,7 +49,7 @@ struct Controls {
   std::atomic<bool> play{false};
   std::atomic<bool> silent{false};
   std::atomic<bool> emergency_stop{false};
-  std::atomic<bool> frozen{false};
+  std::atomic<bool> powered_off{false};
 };
 
 /// What one thread did and what it cost.
@@ -128,20 +128,24 @@ class ImageThread {
 
  private:
   void step(MonoTime at) {
-    if (controls_.frozen.load()) return;
     if (!feeder_.is_open()) {
-      if (!feeder_.open()) return;
+      if (auto opened = feeder_.open(); !opened) return report_once(opened.error().message);
       ++opened_;
     }
     const bool plays = controls_.play.load() && next_ < feeder_.images();
     const std::size_t image = next_ == 0 && !plays ? 0 : plays ? next_ : next_ - 1;
     if (plays && next_ == 0) first_played_ = at;
-    if (feeder_.write(image)) {
-      ++written_;
-    } else {
+    if (auto put = feeder_.put(image); !put) {
       ++refused_;
+      return report_once(put.error().message);
     }
+    ++written_;
     if (plays) ++next_;
+  }
+
+  void report_once(const std::string& problem) {
+    if (problem != problem_) fmt::print(stderr, "feeder: {}\n", problem);
+    problem_ = problem;
   }
 
   ImageFeeder feeder_;
@@ -151,6 +155,7 @@ class ImageThread {
   std::uint64_t written_ = 0;
   std::uint64_t refused_ = 0;
   int opened_ = 0;
+  std::string problem_;
   MonoTime first_played_{};
 };
 
@@ -182,7 +187,8 @@ class BaseThread {
     if (!base_ && !options_.can.empty()) {
       if (auto base = BaseFeeder::start(options_.can, at, options_.keep_s)) base_ = std::move(*base);
     }
-    if (base_) base_->advance_to(at, {controls_.silent.load(), controls_.emergency_stop.load()});
+    if (base_)
+      base_->advance_to(at, {controls_.silent.load(), controls_.emergency_stop.load(), controls_.powered_off.load()});
     if (controls_.play.load()) press(at);
   }
 
@@ -199,7 +205,7 @@ class BaseThread {
         controls_.emergency_stop.store(exists(options_.controls, "estop"));
         break;
       case 9:
-        controls_.frozen.store(exists(options_.controls, "frozen"));
+        controls_.powered_off.store(exists(options_.controls, "poweroff"));
         break;
       default:
         break;

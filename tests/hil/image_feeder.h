@@ -21,7 +21,7 @@ struct ImageFeed {
   [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(width_px * height_px) * 2; }
 };
 
-/// Writes images into a video output, from memory that was filled before.
+/// Puts images into a video output by streaming, from memory that was filled before.
 ///
 /// Threads: one at a time.
 class ImageFeeder {
@@ -40,14 +40,28 @@ class ImageFeeder {
   void close();
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
 
-  /// Writes an image; may wait for the device. \return false: the device is gone and has been closed.
-  bool write(std::size_t image);
+  /// Hands an image to the device; waits a little for a buffer. \return what is wrong; the device is closed then, unless it merely has no
+  /// buffer to spare.
+  Result<void> put(std::size_t image);
 
   [[nodiscard]] std::size_t images() const { return images_; }
 
  private:
+  struct Buffer {
+    void* at = nullptr;
+    std::size_t bytes = 0;
+  };
+
+  Result<void> set_format();
+  Result<void> make_buffers();
+  Result<void> take_buffer(std::uint32_t& index);
+  Result<void> queue(std::uint32_t index);
+  tl::unexpected<Error> failed(const std::string& what);
+
   ImageFeed feed_;
   int fd_ = -1;
+  std::vector<Buffer> buffers_;
+  std::uint32_t queued_ = 0;  ///< buffers that were ever queued; from the last one on, the device runs.
   const std::uint8_t* data_ = nullptr;
   std::size_t images_ = 0;
 };

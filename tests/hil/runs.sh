@@ -1,51 +1,56 @@
 # The runs of tools/hil by name. Sourced.
 
-# run NAME → the robot's file, the seconds that are played, the form.
+# run_hil NAME LONG
 #   timing    images of the scenario from memory; deadlines count
 #   function  the first image stands, so that the robot always has something to follow; faults come
 run_hil() {
-  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene="" play_s=60 repeat=1 limit_s=900 camera=loopback script="$1" robot=sim-home memory_mb=1536
+  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene=sim-home-start play_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb=1024
   case "$name" in
-    devices) scene=sim-home ;;
-    follow) scene=sim-home play_s=45 script=timing ;;
-    round) scene=sim-home-round robot=sim-home-round script=timing ;;
-    lamp) scene=sim-home-lamp robot=sim-home-lamp script=timing ;;
-    short) scene=sim-home camera=vivid ;;
-    faults) scene=sim-home camera=vivid limit_s=7200; [ "$long" = 0 ] || repeat=10 ;;
-    kill) scene=sim-home camera=vivid repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
-    *) die "there is no run '$name' (there are: devices, short, follow, round, lamp, faults, kill)" ;;
+    package) run_package; return ;;
+    devices | webcam) ;;
+    short) limit_s=300 ;;
+    profile) ;;
+    follow) scene=sim-home play_s=45 script=timing robot=sim-home camera=loopback ;;
+    round) scene=sim-home-round robot=sim-home-round script=timing camera=loopback ;;
+    lamp) scene=sim-home-lamp robot=sim-home-lamp script=timing camera=loopback ;;
+    faults) limit_s=7200; [ "$long" = 0 ] || repeat=10 ;;
+    kill) repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
+    *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill)" ;;
   esac
+  if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$play_s"; fi
   local images="$hil/scenes/$scene/images.yuyv"
-  if [ "$script" = timing ]; then
-    scene "$scene" "$play_s"
-    memory_mb=$((1024 + $(stat -c %s "$images") / 1000000))
-  else
-    scene "$scene-start" 1
-    images="$hil/scenes/$scene-start/images.yuyv"
-  fi
-  prepare_job "$job" "$script" "$robot" "$camera" "$play_s" "$repeat" "$(wc -l <"$(dirname "$images")/stamps.txt")"
+  memory_mb=$((memory_mb + $(stat -c %s "$images") / 1000000))
+  prepare_job "$job" "$script" "$robot" "$camera" "$play_s" "$repeat" "$(wc -l <"$hil/scenes/$scene/stamps.txt")"
   say "booting for $name (out/hil/$name/console.txt)"
   local code=0
   ICOUNT="${CGSR_HIL_ICOUNT:-1}" IMAGES="$images" MEMORY_MB="$memory_mb" LIMIT_S="${CGSR_HIL_LIMIT_S:-$limit_s}" bash "$guest/boot.sh" "$hil" "$job" || code=$?
-  python3 "$root/tests/hil/evaluate.py" "$name" "$job" --job-code "$code" --scene "$(dirname "$images")" || code=1
+  python3 "$root/tests/hil/evaluate.py" "$name" "$job" --job-code "$code" --scene "$hil/scenes/$scene" || code=1
   say "$name took $((SECONDS - start)) s"
   return "$code"
+}
+
+# The package in the guest's root file system: install, upgrade, remove, purge.
+run_package() {
+  mkdir -p "$root/out/hil/package"
+  bash "$root/tests/hil/package_chroot.sh" "$hil/rootfs" "$(robot_package)" "$hil/package" 2>&1 | tee "$root/out/hil/package/log.txt"
+  return "${PIPESTATUS[0]}"
 }
 
 prepare_job() {
   local job="$1" script="$2" robot="$3" camera="$4" play_s="$5" repeat="$6" count="$7"
   rm -rf "$job"
-  mkdir -p "$job/root/etc/cgsr" "$job/root/usr/share/cgsr-hil" "$job/root/etc/systemd/system/cgsr.service.d"
-  cp "$root/tests/hil/jobs/$script.sh" "$job/run.sh"
-  printf 'export PLAY_S=%s REPEAT=%s FAULTS="%s"\n' "$play_s" "$repeat" "${CGSR_HIL_FAULTS:-}" | cat - "$job/run.sh" >"$job/run" && mv "$job/run" "$job/run.sh"
-  mkdir -p "$job/root/usr/libexec"
+  mkdir -p "$job/root/etc/cgsr" "$job/root/etc/systemd/system/cgsr.service.d" "$job/root/usr/libexec"
+  printf 'export PLAY_S=%s REPEAT=%s FAULTS="%s"\n' "$play_s" "$repeat" "${CGSR_HIL_FAULTS:-}" | cat - "$root/tests/hil/jobs/$script.sh" >"$job/run.sh"
   strip -o "$job/root/usr/libexec/cgsr-hil-feeder" "$program/cgsr-hil-feeder"
   printf 'CAMERA=%s\nFEED=1\nIMAGES=%s\n' "$camera" "$count" >"$job/env"
-  cp -r config "$job/root/usr/share/cgsr-hil/"
-  sed "s|@ROBOT@|/usr/share/cgsr-hil/config/robots/$robot.toml|" "$root/tests/hil/robots/robot.toml" >"$job/root/etc/cgsr/robot.toml"
-  [ "$script" = timing ] || cat "$root/tests/hil/robots/unbounded.toml" >>"$job/root/etc/cgsr/robot.toml"
+  case "$script" in
+    devices | webcam) ;;  # the package as it was installed
+    timing)
+      mkdir -p "$job/root/usr/share/cgsr-hil"
+      cp -r config "$job/root/usr/share/cgsr-hil/"
+      sed "s|@ROBOT@|/usr/share/cgsr-hil/config/robots/$robot.toml|" "$root/tests/hil/robots/timing.toml" >"$job/root/etc/cgsr/robot.toml" ;;
+    *) cp "$root/tests/hil/robots/$robot.toml" "$job/root/etc/cgsr/robot.toml" ;;
+  esac
   cp "$root/tests/hil/robots/cgsr-service.conf" "$job/root/etc/systemd/system/cgsr.service.d/hil.conf"
-  if [ -z "$(package_files)" ]; then  # no package: the program as cmake --install lays it out
-    DESTDIR="$job/root" cmake --install "$program" --prefix /usr --component cgsr >/dev/null
-  fi
+  [ "$script" != webcam ] || cp "$root/docs/guides/laptop-with-a-webcam.md" "$job/root/"
 }

@@ -19,7 +19,7 @@ arguments=(-nodefaults -no-user-config -display none -no-reboot -machine pc,nvdi
   -device isa-debug-exit,iobase=0xf4,iosize=0x04)
 [ -z "${IMAGES:-}" ] || arguments+=(-object "$(memory images "$IMAGES")" -device nvdimm,id=nv1,memdev=images,unarmed=on)
 [ "${ICOUNT:-0}" = 0 ] || arguments+=(-icount "shift=0,sleep=off" -rtc "base=2026-01-01T00:00:00,clock=vm" -seed 1)
-arguments+=(-append "console=ttyS0 panic=-1 quiet net.ifnames=0 nokaslr norandmaps tsc=reliable systemd.unit=hil.target ${APPEND:-}")
+arguments+=(-append "console=ttyS0 panic=-1 quiet net.ifnames=0 nokaslr norandmaps tsc=reliable no_timer_check systemd.unit=hil.target ${APPEND:-}")
 status=0
 timeout "${LIMIT_S:-300}" qemu-system-x86_64 "${arguments[@]}" || status=$?
 if [ ! -e "$job/code" ]; then

@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# rootfs.sh KERNEL MODULES FOLDER PACKAGE…: the guest's root file system without the program: Debian's minimal base with the named packages, the
-# kernel modules that the tests load, and the files of tests/hil/guest/root. Needs root.
+# rootfs.sh KERNEL MODULES FOLDER: the guest's root file system without the program: Debian's minimal base with the packages of packages.txt
+# and the kernel modules that the tests load. Needs root.
 set -euo pipefail
 here="$(dirname "${BASH_SOURCE[0]}")"
 kernel="$1" modules="$2" folder="$3"
-shift 3
 version="$(<"$kernel/version")"
 rm -rf "$folder"
 sources=()
@@ -13,7 +12,7 @@ for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.sources /etc/apt/sou
 done
 mmdebstrap --mode=root --variant=minbase --format=directory --aptopt='Apt::Install-Recommends "false"' \
   --dpkgopt='path-exclude=/usr/share/man/*' --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
-  --include="$(IFS=,; echo "$*")" bookworm "$folder" "${sources[@]}"
+  --include="$(grep -v '^#' "$here/packages.txt" | paste -sd,)" bookworm "$folder" "${sources[@]}"
 
 into="$folder/lib/modules/$version"
 mkdir -p "$into/extra"
@@ -28,7 +27,6 @@ done
 find "$modules" -name '*.ko' | while read -r file; do strip -g -o "$into/extra/$(basename "$file")" "$file"; done
 depmod -b "$folder" "$version"
 
-cp -a "$here/root/." "$folder/"
 echo robot >"$folder/etc/hostname"
 : >"$folder/etc/fstab"
 echo 0123456789abcdef0123456789abcdef >"$folder/etc/machine-id"
