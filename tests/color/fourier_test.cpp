@@ -76,14 +76,17 @@ TEST(FourierProperty, TheInverseGivesBothGridsBack) {
     const RealGrid b = random_grid(random, 1.0F);
     Spectrum spectrum_a, spectrum_b;
     transform(a, b, spectrum_a, spectrum_b);
-    RealGrid back_a, back_b;
+    RealGrid back_a, back_b, pair_a, pair_b;
 
+    inverse_transform(spectrum_a, spectrum_b, pair_a, pair_b);
     inverse_transform(spectrum_a, back_a);
     inverse_transform(spectrum_b, back_b);
 
     for (std::size_t i = 0; i < kGridArea; ++i) {
       ASSERT_NEAR(back_a[i], a[i], 1e-5) << trial;
       ASSERT_NEAR(back_b[i], b[i], 1e-5) << trial;
+      ASSERT_NEAR(pair_a[i], a[i], 1e-5) << trial;
+      ASSERT_NEAR(pair_b[i], b[i], 1e-5) << trial;
     }
   }
 }

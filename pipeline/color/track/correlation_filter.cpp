@@ -61,9 +61,24 @@ CorrelationFilter::CorrelationFilter(const CorrelationParameters& parameters) : 
   }
 }
 
-void CorrelationFilter::begin(const FilterFeatures& features, double object_cells) {
+/// A cell counts by its share that lies over the object.
+void CorrelationFilter::set_support(double width_cells, double height_cells) {
+  const auto share = [](int i, double length) {
+    const double centre = i + 0.5 - kGrid / 2;
+    return std::clamp(0.5 * length + 0.5 - std::abs(centre), 0.0, 1.0);
+  };
+  for (int y = 0; y < kGrid; ++y) {
+    for (int x = 0; x < kGrid; ++x) {
+      support_[static_cast<std::size_t>(y * kGrid + x)] =
+          static_cast<float>(share(x, width_cells) * share(y, height_cells));
+    }
+  }
+}
+
+void CorrelationFilter::begin(const FilterFeatures& features, double width_cells, double height_cells) {
+  set_support(width_cells, height_cells);
   RealGrid peak;
-  const double sigma = object_cells * parameters_.target_width;
+  const double sigma = std::sqrt(width_cells * height_cells) * parameters_.target_width;
   for (int y = 0; y < kGrid; ++y) {
     for (int x = 0; x < kGrid; ++x) {
       const int dx = (x + kGrid / 2) % kGrid - kGrid / 2;
@@ -74,26 +89,18 @@ void CorrelationFilter::begin(const FilterFeatures& features, double object_cell
   }
   imaging::Spectrum unused;
   imaging::transform(peak, peak, target_, unused);
-  for (auto& channel : numerator_) channel = {};
-  denominator_.fill(0.0F);
+  for (auto& channel : filter_) channel = {};
   transform(features);
-  absorb(target_, 1.0F);
-  first_numerator_ = numerator_;
-  first_denominator_ = denominator_;
+  train(target_, parameters_.first_rounds, 0.0);
 }
 
 void CorrelationFilter::learn(const FilterFeatures& features) {
   transform(features);
-  absorb(target_, static_cast<float>(parameters_.learning_rate));
+  train(target_, parameters_.rounds, parameters_.temporal_weight);
 }
 
 void CorrelationFilter::learn_last(double dx, double dy) {
-  absorb(displaced(target_, dx, dy), static_cast<float>(parameters_.learning_rate));
-}
-
-void CorrelationFilter::forget() {
-  numerator_ = first_numerator_;
-  denominator_ = first_denominator_;
+  train(displaced(target_, dx, dy), parameters_.rounds, parameters_.temporal_weight);
 }
 
 void CorrelationFilter::transform(const FilterFeatures& features) {
@@ -108,42 +115,103 @@ void CorrelationFilter::transform(const FilterFeatures& features) {
   }
 }
 
-void CorrelationFilter::absorb(const imaging::Spectrum& target, float rate) {
-  const float keep = 1.0F - rate;
-  RealGrid power{};
+/// Both weights are ratios of the mean power, so that contrast and number of channels do not matter.
+void CorrelationFilter::train(const imaging::Spectrum& target, int rounds, double temporal_weight) {
+  power_.fill(0.0F);
+  for (const auto& f : features_) {
+    for (std::size_t i = 0; i < kGridArea; ++i) power_[i] += f.re[i] * f.re[i] + f.im[i] * f.im[i];
+  }
+  double mean_power = 1e-6;  // a patch without any contrast teaches nothing
+  for (const float power : power_) mean_power += static_cast<double>(power) / kGridArea;
+
+  previous_ = filter_;
+  cut_ = filter_;
+  for (auto& channel : multiplier_) channel = {};
+  const auto support_weight = static_cast<float>(parameters_.support_weight * mean_power);
+  for (int round = 0; round < rounds; ++round) {
+    fit(target, support_weight, static_cast<float>(temporal_weight * mean_power));
+    cut_to_support();
+  }
+  filter_ = cut_;
+}
+
+/// (F F^H + (gamma + mu) I) H = F conj(G) + gamma (C - S) + mu H' at each frequency, with C the cut filter and S the multiplier.
+void CorrelationFilter::fit(const imaging::Spectrum& target, float support_weight, float temporal_weight) {
+  imaging::Spectrum product{};  // F^H of the right hand side
   for (std::size_t k = 0; k < features_.size(); ++k) {
     const auto& f = features_[k];
-    auto& a = numerator_[k];
+    const auto& c = cut_[k];
+    const auto& s = multiplier_[k];
+    const auto& before = previous_[k];
+    auto& h = filter_[k];
     for (std::size_t i = 0; i < kGridArea; ++i) {
-      a.re[i] = keep * a.re[i] + rate * (target.re[i] * f.re[i] + target.im[i] * f.im[i]);
-      a.im[i] = keep * a.im[i] + rate * (target.re[i] * f.im[i] - target.im[i] * f.re[i]);
-      power[i] += f.re[i] * f.re[i] + f.im[i] * f.im[i];
+      const float re = f.re[i] * target.re[i] + f.im[i] * target.im[i] + support_weight * (c.re[i] - s.re[i]) +
+                       temporal_weight * before.re[i];
+      const float im = f.im[i] * target.re[i] - f.re[i] * target.im[i] + support_weight * (c.im[i] - s.im[i]) +
+                       temporal_weight * before.im[i];
+      h.re[i] = re;
+      h.im[i] = im;
+      product.re[i] += f.re[i] * re + f.im[i] * im;
+      product.im[i] += f.re[i] * im - f.im[i] * re;
     }
   }
-  for (std::size_t i = 0; i < kGridArea; ++i) denominator_[i] = keep * denominator_[i] + rate * power[i];
+  const float diagonal = support_weight + temporal_weight;
+  for (std::size_t i = 0; i < kGridArea; ++i) {
+    const float scale = 1.0F / (diagonal + power_[i]);
+    product.re[i] *= scale;
+    product.im[i] *= scale;
+  }
+  const float inverse_diagonal = 1.0F / diagonal;
+  for (std::size_t k = 0; k < features_.size(); ++k) {
+    const auto& f = features_[k];
+    auto& h = filter_[k];
+    for (std::size_t i = 0; i < kGridArea; ++i) {
+      h.re[i] = inverse_diagonal * (h.re[i] - (f.re[i] * product.re[i] - f.im[i] * product.im[i]));
+      h.im[i] = inverse_diagonal * (h.im[i] - (f.re[i] * product.im[i] + f.im[i] * product.re[i]));
+    }
+  }
+}
+
+/// C = H + S without what lies beside the object, S += H - C.
+void CorrelationFilter::cut_to_support() {
+  RealGrid a;
+  RealGrid b;
+  for (std::size_t k = 0; k + 1 < filter_.size(); k += 2) {
+    for (std::size_t channel = k; channel < k + 2; ++channel) {
+      auto& s = multiplier_[channel];
+      const auto& h = filter_[channel];
+      for (std::size_t i = 0; i < kGridArea; ++i) {
+        s.re[i] += h.re[i];
+        s.im[i] += h.im[i];
+      }
+    }
+    imaging::inverse_transform(multiplier_[k], multiplier_[k + 1], a, b);
+    for (std::size_t i = 0; i < kGridArea; ++i) {
+      a[i] *= support_[i];
+      b[i] *= support_[i];
+    }
+    imaging::transform(a, b, cut_[k], cut_[k + 1]);
+    for (std::size_t channel = k; channel < k + 2; ++channel) {
+      auto& s = multiplier_[channel];
+      const auto& c = cut_[channel];
+      for (std::size_t i = 0; i < kGridArea; ++i) {
+        s.re[i] -= c.re[i];
+        s.im[i] -= c.im[i];
+      }
+    }
+  }
 }
 
 void CorrelationFilter::respond(const FilterFeatures& features, RealGrid& response) {
   transform(features);
-  const auto anchor = static_cast<float>(parameters_.anchor);
-  const float free = 1.0F - anchor;
   imaging::Spectrum answer{};
   for (std::size_t k = 0; k < features_.size(); ++k) {
     const auto& f = features_[k];
-    const auto& a = numerator_[k];
-    const auto& first = first_numerator_[k];
+    const auto& h = filter_[k];
     for (std::size_t i = 0; i < kGridArea; ++i) {
-      const float re = free * a.re[i] + anchor * first.re[i];
-      const float im = free * a.im[i] + anchor * first.im[i];
-      answer.re[i] += re * f.re[i] + im * f.im[i];
-      answer.im[i] += re * f.im[i] - im * f.re[i];
+      answer.re[i] += h.re[i] * f.re[i] + h.im[i] * f.im[i];
+      answer.im[i] += h.re[i] * f.im[i] - h.im[i] * f.re[i];
     }
-  }
-  const auto regularisation = static_cast<float>(parameters_.regularisation);
-  for (std::size_t i = 0; i < kGridArea; ++i) {
-    const float scale = 1.0F / (free * denominator_[i] + anchor * first_denominator_[i] + regularisation);
-    answer.re[i] *= scale;
-    answer.im[i] *= scale;
   }
   RealGrid shifted;
   imaging::inverse_transform(answer, shifted);

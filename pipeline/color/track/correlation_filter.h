@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "pipeline/color/track/fourier.h"
 #include "platform/parameters.h"
@@ -12,37 +11,44 @@ namespace cgsr::color {
 inline constexpr int kFilterChannels = 12;
 using FilterFeatures = std::array<imaging::RealGrid, kFilterChannels>;
 
-/// lambda, r and the width of G in the formulas of CorrelationFilter, and how much of the first image stays.
+/// gamma, mu and the width of G in the formulas of CorrelationFilter, and how often they are evaluated.
 struct CorrelationParameters {
   double target_width = 0.0625;
-  double regularisation = 0.001;
-  double learning_rate = 0.01;
-  double anchor = 0.1;
+  double support_weight = 1.0;
+  double temporal_weight = 20.0;
+  int first_rounds = 4;
+  int rounds = 2;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("target_width", self.target_width, {0.01, 0.5}, "",
                  "The width of the desired correlation peak, as a ratio of the object's size.");
-    visit.number("regularisation", self.regularisation, {1e-6, 1.0}, "",
-                 "The regularisation of the filter, which keeps weak frequencies from dominating.");
-    visit.number("learning_rate", self.learning_rate, {0.0, 1.0}, "", "The weight of each new image in the filter.");
-    visit.number("anchor", self.anchor, {0.0, 1.0}, "",
-                 "The weight of the first image that the filter keeps for ever.");
+    visit.number(
+        "support_weight", self.support_weight, {1e-4, 1e4}, "",
+        "The weight of the constraint that the filter is zero beside the object, relative to the mean power of "
+        "the features.");
+    visit.number("temporal_weight", self.temporal_weight, {0.0, 1e4}, "",
+                 "The weight of the filter of the last image, relative to the mean power of the features.");
+    visit.number("first_rounds", self.first_rounds, {1, 20}, "", "The number of rounds for the first image.");
+    visit.number("rounds", self.rounds, {1, 20}, "", "The number of rounds for every further image.");
   }
 };
 
 /// A discriminative correlation filter over several channels: it answers a patch with a peak where the object's centre is.
 ///
-///   R = sum_k conj(A_k) F_k / (B + lambda),   A_k <- (1 - r) A_k + r conj(G) F_k,   B <- (1 - r) B + r sum_k |F_k|^2
+///   R = sum_k conj(H_k) F_k,   H minimises |R - G|^2 + mu |H - H'|^2,   H_k zero in space beside the object
 ///
-/// with F the spectra of the windowed channels and G that of the wanted peak (MOSSE, Bolme et al. 2010, doi 10.1109/CVPR.2010.5539960;
-/// several channels as in DSST, Danelljan et al. 2014, doi 10.5244/C.28.65).
+/// with F the spectra of the windowed channels, G that of the wanted peak, H' the filter of the image before. The whole patch is a
+/// negative example at every displacement, and none of it is taken for the object (background-aware filters, Galoogahi et al. 2017,
+/// doi 10.1109/ICCV.2017.129); mu keeps what earlier images taught without keeping the images (STRCF, Li et al. 2018,
+/// doi 10.1109/CVPR.2018.00515). Solved by the alternating direction method of multipliers: for each frequency in closed form
+/// (Sherman and Morrison 1950), then cut to the object in space.
 class CorrelationFilter {
  public:
   explicit CorrelationFilter(const CorrelationParameters& parameters);
 
-  /// Forgets everything and learns a first patch. \param object_cells  mean side of the object in cells: how wide the peak is.
-  void begin(const FilterFeatures& features, double object_cells);
+  /// Forgets everything and learns a first patch. \param width_cells, height_cells  of the object, which is in the middle.
+  void begin(const FilterFeatures& features, double width_cells, double height_cells);
 
   /// Learns a further patch in which the object is in the middle.
   void learn(const FilterFeatures& features);
@@ -51,25 +57,27 @@ class CorrelationFilter {
   /// from the middle: a displacement is a turn of the spectrum's phase.
   void learn_last(double dx, double dy);
 
-  /// Back to what begin() learned.
-  void forget();
-
   /// \param response  of every displacement of the object's centre; (16, 16) is none.
   void respond(const FilterFeatures& features, imaging::RealGrid& response);
 
  private:
   using Spectra = std::array<imaging::Spectrum, kFilterChannels>;
+  void set_support(double width_cells, double height_cells);
   void transform(const FilterFeatures& features);
-  void absorb(const imaging::Spectrum& target, float rate);
+  void train(const imaging::Spectrum& target, int rounds, double temporal_weight);
+  void fit(const imaging::Spectrum& target, float support_weight, float temporal_weight);
+  void cut_to_support();
 
   CorrelationParameters parameters_;
   imaging::RealGrid window_;
+  imaging::RealGrid support_;  ///< 1 where the object is, 0 beside it.
+  imaging::RealGrid power_;    ///< sum over the channels of |F|^2.
   imaging::Spectrum target_;
-  Spectra features_;         // of the patch at hand
-  Spectra numerator_;        // A
-  Spectra first_numerator_;  // A of the first patch
-  imaging::RealGrid denominator_;
-  imaging::RealGrid first_denominator_;
+  Spectra features_;    ///< F of the patch at hand.
+  Spectra filter_;      ///< H
+  Spectra previous_;    ///< H'
+  Spectra cut_;         ///< H cut to the support,
+  Spectra multiplier_;  ///< and the sum of what was cut off so far, for the constraint.
 };
 
 /// The highest point of a response, to a fraction of a cell.

@@ -117,4 +117,17 @@ void inverse_transform(Spectrum& spectrum, RealGrid& grid) {
   for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = spectrum.re[i] * (1.0F / kGridArea);
 }
 
+void inverse_transform(const Spectrum& spectrum_a, const Spectrum& spectrum_b, RealGrid& a, RealGrid& b) {
+  Spectrum z;  // of a + i b
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    z.re[i] = spectrum_a.re[i] - spectrum_b.im[i];
+    z.im[i] = spectrum_a.im[i] + spectrum_b.re[i];
+  }
+  transform_both(z.im.data(), z.re.data());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i] = z.re[i] * (1.0F / kGridArea);
+    b[i] = z.im[i] * (1.0F / kGridArea);
+  }
+}
+
 }  // namespace cgsr::imaging

@@ -25,4 +25,7 @@ void transform(const RealGrid& a, const RealGrid& b, Spectrum& spectrum_a, Spect
 /// The inverse, scaled by 1/1024, of a spectrum whose grid is real. \param spectrum  is overwritten.
 void inverse_transform(Spectrum& spectrum, RealGrid& grid);
 
+/// The inverse of two spectra at once whose grids are real. Cost: as of transform().
+void inverse_transform(const Spectrum& spectrum_a, const Spectrum& spectrum_b, RealGrid& a, RealGrid& b);
+
 }  // namespace cgsr::imaging

@@ -115,7 +115,7 @@ void LocalTracker::begin(const imaging::Pyramid& image, const Box& box) {
   reach_y_ = (box.height + around) / box.height;
   take_patch(image, box, {1.0, 1.0, 1.0});
   take_features(patch_);
-  shape_.begin(features_, std::sqrt(kGrid / reach_x_ * kGrid / reach_y_));
+  shape_.begin(features_, kGrid / reach_x_, kGrid / reach_y_);
   scale_.begin(image, box);
   colors_.learn(patch_, object_in_patch(parameters_.inner_margin), object_in_patch(0.0), 1.0);
   learned_colors_ = colors_;

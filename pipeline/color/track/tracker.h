@@ -34,6 +34,7 @@ struct DoubtParameters {
   double mean_rate = 0.05;
   double min_sure_sharpness = 8.0;
   double min_sure_score = 0.8;
+  double min_sharp_score = 0.3;
   double max_divergence_rise = 0.1;
   double min_agreement = 0.62;
   int max_foreign_images = 5;
@@ -58,6 +59,8 @@ struct DoubtParameters {
                  "are bad as well.");
     visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "",
                  "The score below which a response can be doubtful, as a ratio of the mean score.");
+    visit.number("min_sharp_score", self.min_sharp_score, {0.0, 2.0}, "",
+                 "The score below which even a sharp response can be doubtful, as a ratio of the mean score.");
     visit.number("max_divergence_rise", self.max_divergence_rise, {0.0, 0.7}, "nat",
                  "The rise of the divergence above its mean beyond which a response can be doubtful.");
     visit.number("min_agreement", self.min_agreement, {0.0, 1.0}, "",

@@ -35,10 +35,12 @@ Tint Tracker::State::tint(const Box& at) const {
 
 bool Tracker::State::is_weak(const Place& place) const {
   const DoubtParameters& doubt = parameters.doubt;
+  if (place.divergence <= mean_divergence + doubt.max_divergence_rise) return false;
   const bool warm = images_since_sight >= doubt.warm_up_images;
   const double expected = warm ? doubt.min_sure_score * mean_score : doubt.min_found_score * first_score;
-  return place.local.sharpness < doubt.min_sure_sharpness && place.local.score < expected &&
-         place.divergence > mean_divergence + doubt.max_divergence_rise;
+  const bool blunt = place.local.sharpness < doubt.min_sure_sharpness && place.local.score < expected;
+  // Where there is next to no response, the highest of it can be sharp by chance.
+  return blunt || place.local.score < doubt.min_sharp_score * mean_score;
 }
 
 /// \return whether the object is where it was lost, as when something passed before it.
