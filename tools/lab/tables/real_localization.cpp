@@ -238,18 +238,23 @@ geometry::Pose castle_model() {
 }
 
 Result<world::Map> castle_map() {
-  const auto path = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-castle.cao", getpid());
+  // A map is read from its own folder only, so both models are copied beside the file that joins them.
+  const auto folder = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-castle", getpid());
+  std::error_code error;
+  fs::create_directory(folder, error);
+  for (const char* name : {"chateau.cao", "cube.cao"}) {
+    if (!error) fs::copy_file(kCastle / "Models" / name, folder / name, fs::copy_options::overwrite_existing, error);
+  }
+  if (error) return fail(fmt::format("{}: the castle's models cannot be copied: {}", folder.string(), error.message()));
   const Eigen::AngleAxisd turn(castle_model().linear());
   const Vector3d tu = turn.angle() * turn.axis();
   const Vector3d t = castle_model().translation();
-  const std::string text =
-      fmt::format("V1\nload(\"{}\")\nload(\"{}\", t=[{}; {}; {}], tu=[{:.9f}; {:.9f}; {:.9f}])\n0\n0\n0\n0\n0\n0\n",
-                  (kCastle / "Models" / "chateau.cao").string(), (kCastle / "Models" / "cube.cao").string(), t.x(),
-                  t.y(), t.z(), tu.x(), tu.y(), tu.z());
-  if (auto written = write_text(path, text); !written) return tl::unexpected(written.error());
-  auto map = world::load_map(path);
-  std::error_code ignored;
-  fs::remove(path, ignored);
+  const std::string text = fmt::format(
+      "V1\nload(\"chateau.cao\")\nload(\"cube.cao\", t=[{}; {}; {}], tu=[{:.9f}; {:.9f}; {:.9f}])\n0\n0\n0\n0\n0\n0\n",
+      t.x(), t.y(), t.z(), tu.x(), tu.y(), tu.z());
+  auto written = write_text(folder / "castle.cao", text);
+  auto map = written ? world::load_map(folder / "castle.cao") : Result<world::Map>(tl::unexpected(written.error()));
+  fs::remove_all(folder, error);
   return map;
 }
 
