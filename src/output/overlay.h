@@ -17,8 +17,8 @@ namespace cgsr::app {
 /// What is written over an image for people.
 struct OverlayFacts {
   std::uint64_t image_number = 0;
-  std::optional<Box> box;    ///< found object.
-  std::optional<Box> truth;  ///< where it really is, when known.
+  std::optional<Box> box;                 ///< found object.
+  std::optional<Box> truth;               ///< where it really is, when known.
   std::optional<color::Light> light;      ///< that the tracker follows; finer than the grid.
   std::optional<color::Light> plurality;  ///< of the grid's lights over the last second.
   double divergence = 0.0;
