@@ -21,8 +21,10 @@ const cv::Scalar kTruth(230, 150, 60);
 const cv::Scalar kShade(220, 90, 40);
 const cv::Scalar kNothing(60, 60, 60);
 
+/// A light brighter than white keeps its hue.
 cv::Scalar bgr_of(const color::Light& light) {
-  const auto channel = [](double value) { return 255.0 * std::clamp(value, 0.0, 1.0); };
+  const double brightest = std::max({1.0, light.r, light.g, light.b});
+  const auto channel = [brightest](double value) { return 255.0 * std::clamp(value / brightest, 0.0, 1.0); };
   return {channel(light.b), channel(light.g), channel(light.r)};
 }
 
