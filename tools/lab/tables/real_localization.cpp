@@ -241,10 +241,7 @@ Result<world::Map> castle_map() {
   // A map is read from its own folder only, so both models are copied beside the file that joins them.
   const auto folder = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-castle", getpid());
   std::error_code error;
-  fs::create_directory(folder, error);
-  for (const char* name : {"chateau.cao", "cube.cao"}) {
-    if (!error) fs::copy_file(kCastle / "Models" / name, folder / name, fs::copy_options::overwrite_existing, error);
-  }
+  fs::copy(kCastle / "Models", folder, fs::copy_options::recursive | fs::copy_options::overwrite_existing, error);
   if (error) return fail(fmt::format("{}: the castle's models cannot be copied: {}", folder.string(), error.message()));
   const Eigen::AngleAxisd turn(castle_model().linear());
   const Vector3d tu = turn.angle() * turn.axis();
