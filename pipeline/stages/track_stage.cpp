@@ -14,7 +14,7 @@ ObjectTrack track_ball(color::IntegratedTracker& tracker, const ImageView& image
                        WorkBudget& budget) {
   ObjectTrack track;
   track.ball = tracker.track(image, mask, budget);
-  track.object = {track.ball.found, track.ball.box, track.ball.divergence, track.ball.light, track.ball.light};
+  track.object = {track.ball.found, track.ball.box, track.ball.divergence, track.ball.light, track.ball.light, 0.0};
   return track;
 }
 

@@ -26,6 +26,8 @@ struct ObjectTrack {
     visit.number("light_r", when(o.found, o.light.r), {3}, "", "red gain of the light under which it was recognised");
     visit.number("light_g", when(o.found, o.light.g), {3}, "", "green gain");
     visit.number("light_b", when(o.found, o.light.b), {3}, "", "blue gain");
+    visit.number("confidence", when(o.found && o.confidence > 0.0, o.confidence), {3}, "",
+                 "probability that the box covers the object");
   }
 };
 

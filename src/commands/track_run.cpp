@@ -12,10 +12,11 @@ namespace cgsr::app {
 namespace {
 
 std::string csv_row(std::uint64_t frame, const color::TrackedObject& object) {
-  if (!object.found) return fmt::format("{},0,,,,,,,,", frame);
-  return fmt::format("{},1,{:.2f},{:.2f},{:.2f},{:.2f},{:.5f},{:.3f},{:.3f},{:.3f}", frame, object.box.x, object.box.y,
-                     object.box.width, object.box.height, object.divergence, object.light.r, object.light.g,
-                     object.light.b);
+  if (!object.found) return fmt::format("{},0,,,,,,,,,", frame);
+  return fmt::format("{},1,{:.2f},{:.2f},{:.2f},{:.2f},{:.5f},{:.3f},{:.3f},{:.3f},{}", frame, object.box.x,
+                     object.box.y, object.box.width, object.box.height, object.divergence, object.light.r,
+                     object.light.g, object.light.b,
+                     object.confidence > 0.0 ? fmt::format("{:.3f}", object.confidence) : "");
 }
 
 }  // namespace
@@ -25,7 +26,7 @@ TrackRun::TrackRun(Session session, color::ColorModel model, stages::ColorLoop l
 
 Result<void> TrackRun::begin_with(const ImageLease& image, const Box& box) {
   loop_.place(image.view(), box);
-  color::TrackedObject known{true, box, 0.0, {}, {}};
+  color::TrackedObject known{true, box, 0.0, {}, {}, 0.0};
   if (!model_.samples.empty()) known.light = model_.samples.front().light;
   return keep(image, known);
 }

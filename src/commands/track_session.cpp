@@ -15,7 +15,7 @@
 namespace cgsr::app {
 namespace {
 
-constexpr std::string_view kColumns = "frame,found,x,y,width,height,divergence,light_r,light_g,light_b";
+constexpr std::string_view kColumns = "frame,found,x,y,width,height,divergence,light_r,light_g,light_b,confidence";
 
 Result<void> claim_outputs(const TrackOptions& options) {
   OutputClaims files(options.force);

@@ -91,7 +91,7 @@ TEST(CommandLine, TrackWritesTheColumnsOfTheDesignAndFindsTheObject) {
 
   const auto rows = lines_of(read_text(scratch / "t.csv"));
   ASSERT_EQ(rows.size(), 21u);
-  EXPECT_EQ(rows[0], "frame,found,x,y,width,height,divergence,light_r,light_g,light_b");
+  EXPECT_EQ(rows[0], "frame,found,x,y,width,height,divergence,light_r,light_g,light_b,confidence");
   EXPECT_THAT(rows[1], StartsWith("0,1,40.00,80.00,60.00,80.00,"));
   EXPECT_THAT(rows[20], StartsWith("19,1,"));
 

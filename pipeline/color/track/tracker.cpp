@@ -34,6 +34,7 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.first_divergence = s.divergence.of(reduced, box).divergence;
   s.mean_score = s.first_score;
   s.mean_divergence = s.first_divergence;
+  s.confidence.reset();
   s.box = box;
   s.located = true;
   s.images_since_sight = 0;

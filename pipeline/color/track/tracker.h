@@ -6,6 +6,7 @@
 
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
+#include "pipeline/color/track/confidence.h"
 #include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/local_tracker.h"
 #include "pipeline/imaging/reduce.h"
@@ -101,6 +102,7 @@ struct TrackParameters {
   LocalParameters local;
   LightFollowerParameters light;
   DoubtParameters doubt;
+  ConfidenceParameters confidence;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -116,6 +118,7 @@ struct TrackParameters {
     visit.section("local", self.local, "The local tracker");
     visit.section("light", self.light, "The light of the object from image to image");
     visit.section("doubt", self.doubt, "The criteria by which the tracker's answer is doubted, lost and found again");
+    visit.section("confidence", self.confidence, "The probability that the box covers the object");
   }
 };
 
@@ -126,6 +129,8 @@ struct TrackedObject {
   double divergence = 0.0;  ///< [nat] of the box from the learned histogram, under the light that fits best.
   Light light;              ///< the light of the grid that fits best; never preferred in the next image (3.2.2).
   Light exact_light;        ///< the same, not bound to the grid.
+  double confidence =
+      0.0;  ///< probability that the box covers the object (Confidence), 0..1; 0: not estimated, as in mode plain.
 };
 
 /// Follows a learned object from image to image, by what a search of the whole image (ObjectSearch) found in each (chapter 3).

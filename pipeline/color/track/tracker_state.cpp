@@ -78,7 +78,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
   if (sure) learn(place, amounts);
   ++images_since_sight;
-  return answer(place.divergence);
+  return answer(place, amounts);
 }
 
 /// The object's colours are missing under every light that it may be in: the one that these colours ask for and the followed one; and
@@ -103,13 +103,16 @@ TrackedObject Tracker::State::lose() {
   foreign_images = 0;
   images_lost = 0;
   light.lose();
+  confidence.reset();
   return {};
 }
 
-TrackedObject Tracker::State::answer(double divergence_of_box) const {
+TrackedObject Tracker::State::answer(const Place& place, const ColorAmounts& amounts) {
+  const Evidence evidence{place.local.sharpness, learned_amounts.agreement(amounts),
+                          place.local.color_inside - place.local.color_around};
   const Light exact = lit(learned_light, light.gain());
   const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
-  return {true, intersection(box, image), divergence_of_box, nearest_of(model, exact), exact};
+  return {true, intersection(box, image), place.divergence, nearest_of(model, exact), exact, confidence.add(evidence)};
 }
 
 }  // namespace cgsr::color

@@ -33,7 +33,8 @@ struct Tracker::State {
         divergence(m, p.search.divergence),
         pyramid(max_width_px, max_height_px),
         local(p.local),
-        light(p.light) {
+        light(p.light),
+        confidence(p.confidence) {
     learn_from_model();
   }
 
@@ -57,7 +58,7 @@ struct Tracker::State {
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
   bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
-  [[nodiscard]] TrackedObject answer(double divergence_of_box) const;
+  TrackedObject answer(const Place& place, const ColorAmounts& amounts);
 
   ColorModel model;
   TrackParameters parameters;
@@ -65,6 +66,7 @@ struct Tracker::State {
   imaging::Pyramid pyramid;
   LocalTracker local;
   LightFollower light;
+  Confidence confidence;
   ChannelQuantiles learned_quantiles;
   ColorAmounts learned_amounts;
   ColorAmounts recent_amounts;  ///< of the last images, with their light taken out.

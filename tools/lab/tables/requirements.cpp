@@ -45,6 +45,7 @@ constexpr std::array kRequirements{
     NamedRequirement{"tracking-benchmark", "light estimate, of the grid", "chroma correlation", at_least(0.85)},
     NamedRequirement{"tracking-benchmark", "object absent / ours", "false claims", at_most(0.02)},
     NamedRequirement{"tracking-benchmark", "object absent / ours", "found again within 15 images", at_least(0.9)},
+    NamedRequirement{"tracking-benchmark", "confidence, all folds", "calibration error", at_most(0.05)},
     NamedRequirement{"tracking-benchmark", "cost at 640x480 / ours", "mean", at_most(10.0)},
     NamedRequirement{"tracking-benchmark", "cost at 640x480 / ours", "worst", at_most(14.0)},
     NamedRequirement{"search-cost", "all", "labels and search", at_most(5.0)},
