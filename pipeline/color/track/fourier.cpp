@@ -2,6 +2,7 @@
 
 #include <emmintrin.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -27,7 +28,96 @@ constexpr int reversed(int i) {
   return (i & 1) << 4 | (i & 2) << 2 | (i & 4) | (i & 8) >> 2 | (i & 16) >> 4;
 }
 
-/// Cooley-Tukey, radix 2, decimation in time, down the columns: four neighbouring columns in a register.
+/// Four neighbouring columns of one row.
+struct Values {
+  __m128 re;
+  __m128 im;
+};
+
+Values operator+(const Values& a, const Values& b) {
+  return {_mm_add_ps(a.re, b.re), _mm_add_ps(a.im, b.im)};
+}
+
+Values operator-(const Values& a, const Values& b) {
+  return {_mm_sub_ps(a.re, b.re), _mm_sub_ps(a.im, b.im)};
+}
+
+Values operator*(const Values& a, const Values& b) {
+  return {_mm_sub_ps(_mm_mul_ps(a.re, b.re), _mm_mul_ps(a.im, b.im)),
+          _mm_add_ps(_mm_mul_ps(a.re, b.im), _mm_mul_ps(a.im, b.re))};
+}
+
+/// A grid of complex values, the parts apart.
+struct Grid {
+  float* re;
+  float* im;
+  [[nodiscard]] Values load(int at) const { return {_mm_load_ps(re + at), _mm_load_ps(im + at)}; }
+  void store(int at, const Values& values) const {
+    _mm_store_ps(re + at, values.re);
+    _mm_store_ps(im + at, values.im);
+  }
+};
+
+Values twiddle(int k) {
+  const auto i = static_cast<std::size_t>(k);
+  return {_mm_set1_ps(kTwiddles.re[i]), _mm_set1_ps(kTwiddles.im[i])};
+}
+
+/// -i (a - b).
+Values quarter_turn(const Values& a, const Values& b) {
+  return {_mm_sub_ps(a.im, b.im), _mm_sub_ps(b.re, a.re)};
+}
+
+/// The stages with half a butterfly of 1 and 2 rows: all their twiddles are 1 or -i.
+void first_two_stages(const Grid& grid) {
+  for (int start = 0; start < kGridArea; start += 4 * kGrid) {
+    for (int at = start; at < start + kGrid; at += 4) {
+      const Values a = grid.load(at), b = grid.load(at + kGrid);
+      const Values c = grid.load(at + 2 * kGrid), d = grid.load(at + 3 * kGrid);
+      const Values even = a + b, odd = a - b, sum = c + d, turned = quarter_turn(c, d);
+      grid.store(at, even + sum);
+      grid.store(at + kGrid, odd + turned);
+      grid.store(at + 2 * kGrid, even - sum);
+      grid.store(at + 3 * kGrid, odd - turned);
+    }
+  }
+}
+
+/// Those of 4 and 8 rows, in one pass over the grid.
+void middle_two_stages(const Grid& grid) {
+  constexpr int kHalf = 4;
+  constexpr int kStep = kHalf * kGrid;
+  for (int start = 0; start < kGrid; start += 4 * kHalf) {
+    for (int k = 0; k < kHalf; ++k) {
+      const Values inner = twiddle(k * (kGrid / 2 / kHalf));
+      const Values outer = twiddle(k * (kGrid / 4 / kHalf));
+      const int row = (start + k) * kGrid;
+      for (int at = row; at < row + kGrid; at += 4) {
+        const Values a = grid.load(at), b = grid.load(at + kStep) * inner;
+        const Values c = grid.load(at + 2 * kStep), d = grid.load(at + 3 * kStep) * inner;
+        const Values even = a + b, odd = a - b, sum = (c + d) * outer, turned = quarter_turn(c, d) * outer;
+        grid.store(at, even + sum);
+        grid.store(at + kStep, odd + turned);
+        grid.store(at + 2 * kStep, even - sum);
+        grid.store(at + 3 * kStep, odd - turned);
+      }
+    }
+  }
+}
+
+void last_stage(const Grid& grid) {
+  constexpr int kStep = kGridArea / 2;
+  for (int k = 0; k < kGrid / 2; ++k) {
+    const Values turn = twiddle(k);
+    for (int at = k * kGrid; at < (k + 1) * kGrid; at += 4) {
+      const Values a = grid.load(at), b = grid.load(at + kStep) * turn;
+      grid.store(at, a + b);
+      grid.store(at + kStep, a - b);
+    }
+  }
+}
+
+/// Cooley-Tukey, radix 2, decimation in time, down the columns: four neighbouring columns in a register, two stages in a pass.
 void transform_columns(float* re, float* im) {
   for (int row = 0; row < kGrid; ++row) {
     const int other = reversed(row);
@@ -37,31 +127,10 @@ void transform_columns(float* re, float* im) {
       std::swap(im[row * kGrid + x], im[other * kGrid + x]);
     }
   }
-  for (int half = 1; half < kGrid; half *= 2) {
-    for (int start = 0; start < kGrid; start += 2 * half) {
-      for (int k = 0; k < half; ++k) {
-        const auto twiddle = static_cast<std::size_t>(k * (kGrid / 2 / half));
-        const __m128 wr = _mm_set1_ps(kTwiddles.re[twiddle]);
-        const __m128 wi = _mm_set1_ps(kTwiddles.im[twiddle]);
-        float* upper_re = re + (start + k) * kGrid;
-        float* upper_im = im + (start + k) * kGrid;
-        float* lower_re = upper_re + half * kGrid;
-        float* lower_im = upper_im + half * kGrid;
-        for (int x = 0; x < kGrid; x += 4) {
-          const __m128 br = _mm_load_ps(lower_re + x);
-          const __m128 bi = _mm_load_ps(lower_im + x);
-          const __m128 tr = _mm_sub_ps(_mm_mul_ps(br, wr), _mm_mul_ps(bi, wi));
-          const __m128 ti = _mm_add_ps(_mm_mul_ps(br, wi), _mm_mul_ps(bi, wr));
-          const __m128 ar = _mm_load_ps(upper_re + x);
-          const __m128 ai = _mm_load_ps(upper_im + x);
-          _mm_store_ps(upper_re + x, _mm_add_ps(ar, tr));
-          _mm_store_ps(upper_im + x, _mm_add_ps(ai, ti));
-          _mm_store_ps(lower_re + x, _mm_sub_ps(ar, tr));
-          _mm_store_ps(lower_im + x, _mm_sub_ps(ai, ti));
-        }
-      }
-    }
-  }
+  const Grid grid{re, im};
+  first_two_stages(grid);
+  middle_two_stages(grid);
+  last_stage(grid);
 }
 
 void transpose(float* grid) {
@@ -90,6 +159,16 @@ void transform_both(float* re, float* im) {
   transpose(im);
 }
 
+/// A row's values at the negative frequencies, so that they can be computed with as vectors.
+struct MirrorRow {
+  std::array<float, kGrid> values;
+  MirrorRow(const RealGrid& grid, int row) {
+    const float* mirror = grid.data() + (kGrid - row) % kGrid * kGrid;
+    values[0] = mirror[0];
+    std::reverse_copy(mirror + 1, mirror + kGrid, values.begin() + 1);
+  }
+};
+
 }  // namespace
 
 void transform(const RealGrid& a, const RealGrid& b, Spectrum& spectrum_a, Spectrum& spectrum_b) {
@@ -99,14 +178,14 @@ void transform(const RealGrid& a, const RealGrid& b, Spectrum& spectrum_a, Spect
   z.im = b;
   transform_both(z.re.data(), z.im.data());
   for (int y = 0; y < kGrid; ++y) {
-    const int mirror_row = (kGrid - y) % kGrid * kGrid;
-    for (int x = 0; x < kGrid; ++x) {
-      const auto at = static_cast<std::size_t>(y * kGrid + x);
-      const auto mirror = static_cast<std::size_t>(mirror_row + (kGrid - x) % kGrid);
-      spectrum_a.re[at] = 0.5F * (z.re[at] + z.re[mirror]);
-      spectrum_a.im[at] = 0.5F * (z.im[at] - z.im[mirror]);
-      spectrum_b.re[at] = 0.5F * (z.im[at] + z.im[mirror]);
-      spectrum_b.im[at] = 0.5F * (z.re[mirror] - z.re[at]);
+    const auto row = static_cast<std::size_t>(y * kGrid);
+    const MirrorRow re(z.re, y);
+    const MirrorRow im(z.im, y);
+    for (std::size_t x = 0; x < kGrid; ++x) {
+      spectrum_a.re[row + x] = 0.5F * (z.re[row + x] + re.values[x]);
+      spectrum_a.im[row + x] = 0.5F * (z.im[row + x] - im.values[x]);
+      spectrum_b.re[row + x] = 0.5F * (z.im[row + x] + im.values[x]);
+      spectrum_b.im[row + x] = 0.5F * (re.values[x] - z.re[row + x]);
     }
   }
 }
