@@ -1,5 +1,7 @@
 #include "pipeline/color/track/orientation_histograms.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -62,32 +64,32 @@ const VoteTable& vote_table() {
   return table;
 }
 
-/// Cells with a border of one on each side, so that votes past the edge need no test; orientations of a cell lie together.
+/// Cells with a border of one on each side, so that votes past the edge need no test. A row of cells is one orientation after the other, so that the two
+/// cells beside a pixel lie together.
 struct Cells {
-  static constexpr int kStride = kOrientations;
-  std::array<float, static_cast<std::size_t>(34) * 34 * kStride> values;
+  std::array<float, static_cast<std::size_t>(34) * 34 * kOrientations> values;
   int width;
   int height;
 
   Cells(int cells_x, int cells_y) : width(cells_x), height(cells_y) {
-    std::fill_n(values.begin(), static_cast<std::size_t>(width + 2) * static_cast<std::size_t>(height + 2) * kStride,
-                0.0F);
+    std::fill_n(values.begin(), static_cast<std::size_t>(row_length()) * static_cast<std::size_t>(height + 2), 0.0F);
   }
-  float* at(int x, int y) {
-    return values.data() + static_cast<std::ptrdiff_t>((y + 1) * (width + 2) + x + 1) * kStride;
-  }
+  [[nodiscard]] int row_length() const { return (width + 2) * kOrientations; }
+  float* row(int y) { return values.data() + static_cast<std::ptrdiff_t>(y + 1) * row_length(); }
+  float* row(int y, int orientation) { return row(y) + static_cast<std::ptrdiff_t>(orientation) * (width + 2) + 1; }
 };
 
 /// One row of pixels: each votes for the two cells beside it, linearly in x. `row_cells` has a cell more on either side.
 class RowVotes {
  public:
-  RowVotes(int width_px, int cell_px, const VoteTable& table) : width_(width_px), table_(table) {
+  RowVotes(int width_px, int cell_px, const VoteTable& table)
+      : width_(width_px), cells_(width_px / cell_px + 2), table_(table) {
     for (int x = 0; x < width_px; ++x) {
       // (x + 0.5) / cell - 0.5: which cell's centre is left of the pixel, and how far it is from there
       const int doubled = 2 * x + 1 - cell_px;
       const int cell = doubled < 0 ? -1 : doubled / (2 * cell_px);
       const auto right = static_cast<float>(doubled - cell * 2 * cell_px) / static_cast<float>(2 * cell_px);
-      places_[static_cast<std::size_t>(x)] = {(cell + 1) * kOrientations, 1.0F - right, right};
+      places_[static_cast<std::size_t>(x)] = {cell + 1, {1.0F - right, right}};
     }
   }
 
@@ -100,24 +102,32 @@ class RowVotes {
 
  private:
   struct Place {
-    int offset;
-    float left_share;
-    float right_share;
+    std::int32_t left;            ///< the cell to the left of the pixel,
+    std::array<float, 2> shares;  ///< and the shares of this and the next.
   };
 
   void vote(int x, int gx, int gy, float* row_cells) const {
     if ((gx | gy) == 0) return;
-    const Votes votes = table_.of(gx, gy);  // copies: the compiler cannot know that the cells lie elsewhere
-    const Place place = places_[static_cast<std::size_t>(x)];
-    float* first = row_cells + place.offset + votes.first;
-    float* second = row_cells + place.offset + votes.second;
-    first[0] += place.left_share * votes.first_weight;
-    second[0] += place.left_share * votes.second_weight;
-    first[kOrientations] += place.right_share * votes.first_weight;
-    second[kOrientations] += place.right_share * votes.second_weight;
+    const Votes& votes = table_.of(gx, gy);
+    const Place& place = places_[static_cast<std::size_t>(x)];
+    const __m128 shares = pair(place.shares.data());
+    float* first = row_cells + place.left + votes.first * cells_;
+    float* second = row_cells + place.left + votes.second * cells_;
+    const __m128 first_votes = _mm_mul_ps(shares, _mm_set1_ps(votes.first_weight));
+    const __m128 second_votes = _mm_mul_ps(shares, _mm_set1_ps(votes.second_weight));
+    store_pair(first, _mm_add_ps(pair(first), first_votes));
+    store_pair(second, _mm_add_ps(pair(second), second_votes));
+  }
+
+  static __m128 pair(const float* from) {
+    return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from)));
+  }
+  static void store_pair(float* to, __m128 values) {
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_castps_si128(values));
   }
 
   int width_;
+  int cells_;  ///< of a row with its border.
   const VoteTable& table_;
   std::array<Place, 64> places_;
 };
@@ -125,7 +135,7 @@ class RowVotes {
 void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells& cells) {
   const RowVotes votes(size.width_px, cell_px, vote_table());
   std::array<float, std::size_t{34} * kOrientations> row_cells;
-  const auto row_length = static_cast<std::size_t>((cells.width + 2) * kOrientations);
+  const auto row_length = static_cast<std::size_t>(cells.row_length());
   for (int y = 0; y < size.height_px; ++y) {
     const std::uint8_t* row = luma.data() + static_cast<std::ptrdiff_t>(y) * size.width_px;
     std::fill_n(row_cells.begin(), row_length, 0.0F);
@@ -135,8 +145,8 @@ void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells
     const int doubled = 2 * y + 1 - cell_px;
     const int cell_y = doubled < 0 ? -1 : doubled / (2 * cell_px);
     const auto lower = static_cast<float>(doubled - cell_y * 2 * cell_px) / static_cast<float>(2 * cell_px);
-    float* top = cells.at(-1, cell_y);
-    float* bottom = cells.at(-1, cell_y + 1);
+    float* top = cells.row(cell_y);
+    float* bottom = cells.row(cell_y + 1);
     for (std::size_t i = 0; i < row_length; ++i) {
       top[i] += (1.0F - lower) * row_cells[i];
       bottom[i] += lower * row_cells[i];
@@ -199,15 +209,14 @@ void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, 
 
   const std::ptrdiff_t plane = static_cast<std::ptrdiff_t>(width) * height;
   BorderedPlane energy(width, height);
-  for (int y = 0; y < height;
-       ++y) {  // from cell by cell to plane by plane, whose rows are then computed with as vectors
+  for (int y = 0; y < height; ++y) {
     float* row_energy = energy.row(y);
     std::fill_n(row_energy, width, 0.0F);
     for (int b = 0; b < kOrientations; ++b) {
-      const float* cell = cells.at(0, y) + b;
+      const float* from = cells.row(y, b);
       float* to = out.data() + b * plane + static_cast<std::ptrdiff_t>(y) * width;
-      for (int x = 0; x < width; ++x) to[x] = cell[static_cast<std::ptrdiff_t>(x) * Cells::kStride];
-      for (int x = 0; x < width; ++x) row_energy[x] += to[x] * to[x];
+      std::copy_n(from, width, to);
+      for (int x = 0; x < width; ++x) row_energy[x] += from[x] * from[x];
     }
   }
   const float floor_energy = 1.25F * static_cast<float>(cell_px * cell_px);  // flat patches stay flat

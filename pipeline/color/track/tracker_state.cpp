@@ -50,9 +50,11 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   light.predict(channel_quantiles(view_image(pyramid)));
   Place place;
   bool sure = false;
+  bool followed = false;
   if (located && !lost()) {
     place = look(reduced, box);
-    sure = !is_weak(place) || recognise(reduced, matches, budget, place) || find(reduced, matches, budget, place);
+    followed = !is_weak(place);
+    sure = followed || recognise(reduced, matches, budget, place) || find(reduced, matches, budget, place);
     weak_images = sure ? 0 : weak_images + 1;
     if (lost()) return lose();
   } else {
@@ -76,7 +78,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
   foreign_images = is_foreign(seen, amounts) ? foreign_images + 1 : 0;
   if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
-  if (sure) learn(place, amounts);
+  if (sure) learn(place, amounts, followed);
   ++images_since_sight;
   return answer(place, amounts);
 }
@@ -88,8 +90,9 @@ bool Tracker::State::is_foreign(const Tint& seen, const ColorAmounts& amounts) c
          parameters.doubt.min_agreement;
 }
 
-void Tracker::State::learn(const Place& place, const ColorAmounts& amounts) {
-  local.learn(pyramid, box, light.gain());
+/// Where it was looked for in many places, the next image teaches the same and has the time for it.
+void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool followed) {
+  if (followed) local.learn(pyramid, box, light.gain());
   const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
   mean_score += rate * (place.local.score - mean_score);
   mean_divergence += rate * (place.divergence - mean_divergence);

@@ -52,7 +52,7 @@ struct Tracker::State {
   }
   [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.max_doubtful_images; }
   [[nodiscard]] bool is_foreign(const Tint& seen, const ColorAmounts& amounts) const;
-  void learn(const Place& place, const ColorAmounts& amounts);
+  void learn(const Place& place, const ColorAmounts& amounts, bool followed);
   TrackedObject lose();
   [[nodiscard]] bool is_weak(const Place& place) const;
   bool stayed(const imaging::ReducedImage& reduced, Place& place);
