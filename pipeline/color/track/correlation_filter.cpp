@@ -64,7 +64,7 @@ CorrelationFilter::CorrelationFilter(const CorrelationParameters& parameters) : 
 /// A cell counts by its share that lies over the object.
 void CorrelationFilter::set_support(double width_cells, double height_cells) {
   const auto share = [](int i, double length) {
-    const double centre = i + 0.5 - kGrid / 2;
+    const double centre = i + 0.5 - 0.5 * kGrid;
     return std::clamp(0.5 * length + 0.5 - std::abs(centre), 0.0, 1.0);
   };
   for (int y = 0; y < kGrid; ++y) {
