@@ -17,9 +17,6 @@
 namespace cgsr::color {
 namespace {
 
-using imaging::kGrid;
-using imaging::kGridArea;
-using imaging::RealGrid;
 using Complexes = std::vector<std::complex<double>>;
 
 std::size_t at(int x, int y) {

@@ -11,7 +11,7 @@
 
 #include "tests/support/allocation_guard.h"
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 namespace {
 
 using Complexes = std::vector<std::complex<double>>;
@@ -129,4 +129,4 @@ TEST(FourierAlloc, Nothing) {
 }
 
 }  // namespace
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

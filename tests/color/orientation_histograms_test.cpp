@@ -10,14 +10,14 @@
 
 #include "tests/support/allocation_guard.h"
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 using Values = std::vector<double>;
 
 /// The same in double and without a table: every pixel asks atan2 and shares its vote out over all cells that are near enough.
-Values naive_histograms(const Bytes& luma, PatchSize size, int cell_px) {
+Values naive_histograms(const Bytes& luma, imaging::PatchSize size, int cell_px) {
   const int width = size.width_px / cell_px, height = size.height_px / cell_px;
   const auto pixel = [&](int x, int y) {
     x = std::clamp(x, 0, size.width_px - 1);
@@ -71,7 +71,7 @@ Values naive_histograms(const Bytes& luma, PatchSize size, int cell_px) {
   return out;
 }
 
-std::vector<float> histograms(const Bytes& luma, PatchSize size, int cell_px) {
+std::vector<float> histograms(const Bytes& luma, imaging::PatchSize size, int cell_px) {
   std::vector<float> out(size.area() / static_cast<std::size_t>(cell_px * cell_px) * kOrientations, -1.0F);
   orientation_histograms(luma, size, cell_px, out);
   return out;
@@ -84,7 +84,7 @@ struct Question {
              cell_px * (3 + static_cast<int>(random() % static_cast<unsigned>(64 / cell_px - 2)))},
         luma(size.area()) {}
   int cell_px;
-  PatchSize size;
+  imaging::PatchSize size;
   Bytes luma;
 };
 
@@ -147,7 +147,7 @@ TEST(OrientationHistogramsProperty, AreNearTheDefinitionOnAnyGreyLevel) {
 TEST(OrientationHistograms, ARampVotesForItsOwnDirection) {
   for (int bin = 0; bin < kOrientations; ++bin) {
     const double angle = std::numbers::pi * bin / kOrientations;
-    const PatchSize size{16, 16};
+    const imaging::PatchSize size{16, 16};
     Bytes luma(size.area());
     for (int y = 0; y < 16; ++y) {
       for (int x = 0; x < 16; ++x) {
@@ -208,7 +208,7 @@ TEST(OrientationHistogramsProperty, AreThoseOfTheNegative) {
 TEST(OrientationHistogramsAlloc, NothingAfterTheFirst) {
   if (!test::AllocationGuard::counts()) GTEST_SKIP() << "a sanitizer brings its own malloc";
   const Bytes luma(64 * 64, 7);
-  std::vector<float> out(kMostCells * kOrientations);
+  std::vector<float> out(kMaxHistogramCells * kOrientations);
   orientation_histograms(luma, {64, 64}, 2, out);
   const test::AllocationGuard guard;
   orientation_histograms(luma, {64, 64}, 2, out);
@@ -216,4 +216,4 @@ TEST(OrientationHistogramsAlloc, NothingAfterTheFirst) {
 }
 
 }  // namespace
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

@@ -7,10 +7,6 @@
 namespace cgsr::color {
 namespace {
 
-using imaging::kGrid;
-using imaging::kGridArea;
-using imaging::RealGrid;
-
 float hann(int i) {
   return static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * (i + 0.5) / kGrid));
 }
@@ -30,10 +26,10 @@ struct Phases {
 };
 
 /// The spectrum of the same grid moved by (dx, dy) cells.
-imaging::Spectrum displaced(const imaging::Spectrum& spectrum, double dx, double dy) {
+Spectrum displaced(const Spectrum& spectrum, double dx, double dy) {
   const Phases columns(dx);
   const Phases rows(dy);
-  imaging::Spectrum moved;
+  Spectrum moved;
   for (std::size_t y = 0; y < kGrid; ++y) {
     for (std::size_t x = 0; x < kGrid; ++x) {
       const std::size_t i = y * kGrid + x;
@@ -87,8 +83,8 @@ void CorrelationFilter::begin(const FilterFeatures& features, double width_cells
           static_cast<float>(std::exp(-0.5 * (dx * dx + dy * dy) / (sigma * sigma)));
     }
   }
-  imaging::Spectrum unused;
-  imaging::transform(peak, peak, target_, unused);
+  Spectrum unused;
+  color::transform(peak, peak, target_, unused);
   for (auto& channel : filter_) channel = {};
   transform(features);
   train(target_, parameters_.first_rounds, 0.0);
@@ -111,12 +107,12 @@ void CorrelationFilter::transform(const FilterFeatures& features) {
       a[i] = features[k][i] * window_[i];
       b[i] = features[k + 1][i] * window_[i];
     }
-    imaging::transform(a, b, features_[k], features_[k + 1]);
+    color::transform(a, b, features_[k], features_[k + 1]);
   }
 }
 
 /// Both weights are ratios of the mean power, so that contrast and number of channels do not matter.
-void CorrelationFilter::train(const imaging::Spectrum& target, int rounds, double temporal_weight) {
+void CorrelationFilter::train(const Spectrum& target, int rounds, double temporal_weight) {
   power_.fill(0.0F);
   for (const auto& f : features_) {
     for (std::size_t i = 0; i < kGridArea; ++i) power_[i] += f.re[i] * f.re[i] + f.im[i] * f.im[i];
@@ -136,8 +132,8 @@ void CorrelationFilter::train(const imaging::Spectrum& target, int rounds, doubl
 }
 
 /// (F F^H + (gamma + mu) I) H = F conj(G) + gamma (C - S) + mu H' at each frequency, with C the cut filter and S the multiplier.
-void CorrelationFilter::fit(const imaging::Spectrum& target, float support_weight, float temporal_weight) {
-  imaging::Spectrum product{};  // F^H of the right hand side
+void CorrelationFilter::fit(const Spectrum& target, float support_weight, float temporal_weight) {
+  Spectrum product{};  // F^H of the right hand side
   for (std::size_t k = 0; k < features_.size(); ++k) {
     const auto& f = features_[k];
     const auto& c = cut_[k];
@@ -185,12 +181,12 @@ void CorrelationFilter::cut_to_support() {
         s.im[i] += h.im[i];
       }
     }
-    imaging::inverse_transform(multiplier_[k], multiplier_[k + 1], a, b);
+    color::inverse_transform(multiplier_[k], multiplier_[k + 1], a, b);
     for (std::size_t i = 0; i < kGridArea; ++i) {
       a[i] *= support_[i];
       b[i] *= support_[i];
     }
-    imaging::transform(a, b, cut_[k], cut_[k + 1]);
+    color::transform(a, b, cut_[k], cut_[k + 1]);
     for (std::size_t channel = k; channel < k + 2; ++channel) {
       auto& s = multiplier_[channel];
       const auto& c = cut_[channel];
@@ -204,7 +200,7 @@ void CorrelationFilter::cut_to_support() {
 
 void CorrelationFilter::respond(const FilterFeatures& features, RealGrid& response) {
   transform(features);
-  imaging::Spectrum answer{};
+  Spectrum answer{};
   for (std::size_t k = 0; k < features_.size(); ++k) {
     const auto& f = features_[k];
     const auto& h = filter_[k];
@@ -214,7 +210,7 @@ void CorrelationFilter::respond(const FilterFeatures& features, RealGrid& respon
     }
   }
   RealGrid shifted;
-  imaging::inverse_transform(answer, shifted);
+  color::inverse_transform(answer, shifted);
   for (int y = 0; y < kGrid; ++y) {  // no displacement goes to the middle
     for (int x = 0; x < kGrid; ++x) {
       const int to = (y + kGrid / 2) % kGrid * kGrid + (x + kGrid / 2) % kGrid;

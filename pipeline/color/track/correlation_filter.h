@@ -9,7 +9,7 @@ namespace cgsr::color {
 
 /// Channels of a patch of 32x32 cells: nine gradient orientations, luma, U, V.
 inline constexpr int kFilterChannels = 12;
-using FilterFeatures = std::array<imaging::RealGrid, kFilterChannels>;
+using FilterFeatures = std::array<RealGrid, kFilterChannels>;
 
 /// gamma, mu and the width of G in the formulas of CorrelationFilter, and how often they are evaluated.
 struct CorrelationParameters {
@@ -58,21 +58,21 @@ class CorrelationFilter {
   void learn_last(double dx, double dy);
 
   /// \param response  of every displacement of the object's centre; (16, 16) is none.
-  void respond(const FilterFeatures& features, imaging::RealGrid& response);
+  void respond(const FilterFeatures& features, RealGrid& response);
 
  private:
-  using Spectra = std::array<imaging::Spectrum, kFilterChannels>;
+  using Spectra = std::array<Spectrum, kFilterChannels>;
   void set_support(double width_cells, double height_cells);
   void transform(const FilterFeatures& features);
-  void train(const imaging::Spectrum& target, int rounds, double temporal_weight);
-  void fit(const imaging::Spectrum& target, float support_weight, float temporal_weight);
+  void train(const Spectrum& target, int rounds, double temporal_weight);
+  void fit(const Spectrum& target, float support_weight, float temporal_weight);
   void cut_to_support();
 
   CorrelationParameters parameters_;
-  imaging::RealGrid window_;
-  imaging::RealGrid support_;  ///< 1 where the object is, 0 beside it.
-  imaging::RealGrid power_;    ///< sum over the channels of |F|^2.
-  imaging::Spectrum target_;
+  RealGrid window_;
+  RealGrid support_;  ///< 1 where the object is, 0 beside it.
+  RealGrid power_;    ///< sum over the channels of |F|^2.
+  Spectrum target_;
   Spectra features_;    ///< F of the patch at hand.
   Spectra filter_;      ///< H
   Spectra previous_;    ///< H'
@@ -88,6 +88,6 @@ struct Peak {
   double sharpness =
       0.0;  ///< peak to sidelobe ratio: (value - mean) / standard deviation of what lies more than 3 cells away.
 };
-Peak peak_of(const imaging::RealGrid& response);
+Peak peak_of(const RealGrid& response);
 
 }  // namespace cgsr::color

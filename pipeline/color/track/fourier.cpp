@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 namespace {
 
 /// exp(-2 pi i k / 32), k = 0..15.
@@ -209,4 +209,4 @@ void inverse_transform(const Spectrum& spectrum_a, const Spectrum& spectrum_b, R
   }
 }
 
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 
 /// Side of the square grids that are transformed.
 inline constexpr int kGrid = 32;
@@ -28,4 +28,4 @@ void inverse_transform(Spectrum& spectrum, RealGrid& grid);
 /// The inverse of two spectra at once whose grids are real. Cost: as of transform().
 void inverse_transform(const Spectrum& spectrum_a, const Spectrum& spectrum_b, RealGrid& a, RealGrid& b);
 
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

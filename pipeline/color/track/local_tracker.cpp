@@ -9,10 +9,6 @@
 namespace cgsr::color {
 namespace {
 
-using imaging::kGrid;
-using imaging::kGridArea;
-using imaging::RealGrid;
-
 constexpr int kShapeCell_px = 2;
 constexpr double kLeastInner = 0.3;  // of the box's side, however thin the box is
 /// A plane of 64x64 bytes as a channel of 32x32 cells: 2x2 means, without the mean of all, in units of 128 / gain grey levels.
@@ -77,13 +73,13 @@ LocalTracker::Displacement LocalTracker::displacement(const Box& box, const Box&
 
 /// Whether the patch at hand shows `box` nearly in its middle, in its size and under this light, so that no other needs to be taken.
 bool LocalTracker::patch_shows(const imaging::Pyramid& image, const Box& box, const Light& light) const {
-  constexpr double kMostCells = 2.0;    // the window still weighs more than 0.9 there
-  constexpr double kMostGrowth = 0.02;  // less than a step of the scales
+  constexpr double kMaxMovedCells = 2.0;  // the window still weighs more than 0.9 there
+  constexpr double kMostGrowth = 0.02;    // less than a step of the scales
   constexpr double kMostGain = 0.02;
   if (taken_build_ != image.builds()) return false;
   const Displacement moved = displacement(box, taken_);
   const Light change = without_light(light, taken_light_);
-  return std::max(std::abs(moved.x), std::abs(moved.y)) <= kMostCells &&
+  return std::max(std::abs(moved.x), std::abs(moved.y)) <= kMaxMovedCells &&
          std::abs(box.width / taken_.width - 1.0) <= kMostGrowth &&
          std::max({std::abs(change.r - 1.0), std::abs(change.g - 1.0), std::abs(change.b - 1.0)}) <= kMostGain;
 }
@@ -99,9 +95,9 @@ void LocalTracker::take_patch(const imaging::Pyramid& image, const Box& box, con
 }
 
 void LocalTracker::take_features(const ColorPatch& patch) {
-  std::array<float, std::size_t{imaging::kOrientations} * kGridArea> orientations;
-  imaging::orientation_histograms(patch.y, patch.size, kShapeCell_px, orientations);
-  for (std::size_t k = 0; k < imaging::kOrientations; ++k) {
+  std::array<float, std::size_t{kOrientations} * kGridArea> orientations;
+  orientation_histograms(patch.y, patch.size, kShapeCell_px, orientations);
+  for (std::size_t k = 0; k < kOrientations; ++k) {
     std::copy_n(orientations.begin() + static_cast<std::ptrdiff_t>(k * kGridArea), kGridArea, features_[k].begin());
   }
   to_channel(patch.y, 1.0F, features_[9]);

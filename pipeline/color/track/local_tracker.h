@@ -86,7 +86,7 @@ class LocalTracker {
   [[nodiscard]] bool patch_shows(const imaging::Pyramid& image, const Box& box, const Light& light) const;
   void take_patch(const imaging::Pyramid& image, const Box& box, const Light& light);
   void take_features(const ColorPatch& patch);
-  void score_colors(const ColorLikelihood& colors, imaging::RealGrid& score);
+  void score_colors(const ColorLikelihood& colors, RealGrid& score);
   void measure_colors(double score, LocalAnswer& answer) const;
 
   LocalParameters parameters_;

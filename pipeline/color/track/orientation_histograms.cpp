@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 namespace {
 
 constexpr int kSteepest = 128;         // steeper gradients, which are rare, count as this
@@ -132,7 +132,7 @@ class RowVotes {
   std::array<Place, 64> places_;
 };
 
-void vote(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, Cells& cells) {
+void vote(std::span<const std::uint8_t> luma, imaging::PatchSize size, int cell_px, Cells& cells) {
   const RowVotes votes(size.width_px, cell_px, vote_table());
   std::array<float, std::size_t{34} * kOrientations> row_cells;
   const auto row_length = static_cast<std::size_t>(cells.row_length());
@@ -201,7 +201,8 @@ void normalise(const float* norms_above, const float* norms_here, int width, flo
 
 }  // namespace
 
-void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, std::span<float> out) {
+void orientation_histograms(std::span<const std::uint8_t> luma, imaging::PatchSize size, int cell_px,
+                            std::span<float> out) {
   const int width = size.width_px / cell_px;
   const int height = size.height_px / cell_px;
   Cells cells(width, height);
@@ -230,4 +231,4 @@ void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, 
   }
 }
 
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

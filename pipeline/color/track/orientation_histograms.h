@@ -5,7 +5,7 @@
 
 #include "pipeline/imaging/pyramid.h"
 
-namespace cgsr::imaging {
+namespace cgsr::color {
 
 inline constexpr int kOrientations = 9;
 
@@ -16,9 +16,10 @@ inline constexpr int kOrientations = 9;
 /// orientations.
 /// \param luma  patch of `size`, whose sides are multiples of `cell_px`. \param cell_px  2 or 4.
 /// \param out  kOrientations planes of (width / cell) x (height / cell) values in [0, 0.4], one after the other.
-void orientation_histograms(std::span<const std::uint8_t> luma, PatchSize size, int cell_px, std::span<float> out);
+void orientation_histograms(std::span<const std::uint8_t> luma, imaging::PatchSize size, int cell_px,
+                            std::span<float> out);
 
 /// Largest patch: 64x64 pixels in cells of 2.
-inline constexpr int kMostCells = 32 * 32;
+inline constexpr int kMaxHistogramCells = 32 * 32;
 
-}  // namespace cgsr::imaging
+}  // namespace cgsr::color

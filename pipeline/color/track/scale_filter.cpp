@@ -63,7 +63,7 @@ ScaleFilter::ScaleFilter(const ScaleParameters& parameters) : parameters_(parame
 
 void ScaleFilter::begin(const imaging::Pyramid& image, const Box& box) {
   patch_ = patch_of(box);
-  features_count_ = patch_.area() / (kCell_px * kCell_px) * imaging::kOrientations;
+  features_count_ = patch_.area() / (kCell_px * kCell_px) * kOrientations;
   for (auto* spectra : {&numerator_re_, &numerator_im_}) {
     for (auto& values : *spectra) std::fill(values.begin(), values.end(), 0.0F);
   }
@@ -109,7 +109,7 @@ void ScaleFilter::describe(const imaging::Pyramid& image, const Box& box) {
   for (std::size_t n = 0; n < kScales; ++n) {
     image.sample_luma(grown(box, factors_[n]), patch_, luma);
     const std::span<float> features(samples_.data() + n * features_count_, features_count_);
-    imaging::orientation_histograms({luma.data(), patch_.area()}, patch_, kCell_px, features);
+    orientation_histograms({luma.data(), patch_.area()}, patch_, kCell_px, features);
     for (float& feature : features) feature *= window_[n];
   }
   for (std::size_t k = 0; k < kFrequencies; ++k) {

@@ -52,7 +52,7 @@ class ScaleFilter {
  private:
   // The features are real, so half of the spectrum over the scales says everything.
   static constexpr int kFrequencies = kScales / 2 + 1;
-  static constexpr int kMostFeatures = 12 * 12 * imaging::kOrientations;
+  static constexpr int kMostFeatures = 12 * 12 * kOrientations;
   struct Complex {
     float re = 0.0F;
     float im = 0.0F;
