@@ -38,8 +38,10 @@ Result<Map> load_map(const std::filesystem::path& path, const LoadOptions& optio
   const std::string ending = ending_of(path);
   if (ending == kCompactExtension) return read_compact(path);
   if (ending != ".obj" && ending != ".gltf" && ending != ".glb" && ending != ".cao")
-    return fail(fmt::format("{}: '{}' is no kind of map that is read: .obj, .gltf, .glb, .cao or {}", path.string(),
-                            ending, kCompactExtension));
+    return fail(
+        fmt::format("{}: '{}' is no kind of map that is read: .obj, .gltf, .glb, .cao or {}; a ROS floor map (.yaml) "
+                    "goes through cgsr map import with --wall-height",
+                    path.string(), ending, kCompactExtension));
   auto soup = read_soup(path, ending, options);
   if (!soup) return tl::unexpected(soup.error());
   auto map = clean(*soup, options.weld_m, options.lies_on_m);

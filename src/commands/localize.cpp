@@ -9,6 +9,7 @@
 #include "src/commands/command.h"
 #include "src/commands/files.h"
 #include "src/commands/localize_run.h"
+#include "src/commands/map_options.h"
 #include "src/commands/option_checks.h"
 #include "src/output/progress.h"
 
@@ -53,6 +54,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<LocalizeOptions>();
   auto* command = app.add_subcommand("localize", "correct a camera's pose against a map of edges (chapter 4)");
   command->add_option("--map", options->map, "OBJ, glTF, ViSP .cao, or what cgsr map import wrote")->required();
+  add_map_frame_options(*command, options->load);
   command->add_option("--camera", options->camera, "YAML of ROS's camera_calibration")->required();
   command->add_option("--input", options->input, "video, image folder or image")->required();
   auto* pose = command->add_option("--pose", options->pose, "CSV with the pose of image 0: follow from there");
@@ -67,6 +69,14 @@ void add_localize_command(CLI::App& app, int& exit_code) {
                    "the camera's pose on the robot: CSV, or the TOML that cgsr calibrate mount writes; without it the "
                    "odometry is the camera's own")
       ->excludes(priors);
+  command
+      ->add_option("--sigma-m", options->sigma_m,
+                   "standard deviation of the given poses along every axis, instead of the configuration's")
+      ->check(in_range(1e-4, 10.0));
+  command
+      ->add_option("--sigma-deg", options->sigma_deg,
+                   "standard deviation of the given poses about every axis, instead of the configuration's")
+      ->check(in_range(0.01, 90.0));
   command->add_option("--method", options->method, "instead of the configuration's")
       ->check(CLI::IsMember({"glcorrect", "stronger", "paper"}));
   command->add_option("--config", options->config,

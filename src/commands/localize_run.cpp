@@ -25,10 +25,13 @@ constexpr int kMostLooks = 200;  // at one image, while a search is under way
 
 Result<config::Localization> configuration_of(const LocalizeOptions& options) {
   auto config = config::load_localization(options.config);
-  if (!config || options.method.empty()) return config;
+  if (!config) return config;
   for (const auto& [name, method] : localization::kMethodNames) {
     if (name == options.method) config->localizer.method = method;
   }
+  config::PriorParameters& prior = config->prior;
+  if (options.sigma_m) prior.x_m = prior.y_m = prior.z_m = *options.sigma_m;
+  if (options.sigma_deg) prior.heading_deg = prior.tilt_deg = *options.sigma_deg;
   return config;
 }
 
@@ -52,13 +55,17 @@ Result<void> claim_outputs(const LocalizeOptions& options) {
   return files.claim();
 }
 
-/// A pose to follow from was measured or found: it is believed better than one that odometry carried.
-localization::PriorSigmas start_sigmas(const config::PriorParameters& prior) {
+/// A pose to follow from was measured or found: unless its width was given, it is believed better than one that odometry carried.
+localization::PriorSigmas start_sigmas(const config::PriorParameters& prior, const LocalizeOptions& options) {
   constexpr double kPlace_m = 0.02;
   constexpr double kTurn_deg = 1.0;
   config::PriorParameters start = prior;
-  for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, kPlace_m);
-  for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, kTurn_deg);
+  if (!options.sigma_m) {
+    for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, kPlace_m);
+  }
+  if (!options.sigma_deg) {
+    for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, kTurn_deg);
+  }
   return start.sigmas();
 }
 
@@ -76,7 +83,7 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   if (!camera) return tl::unexpected(camera.error());
   state.camera = *camera;
   if (auto opened = run.open_images(options); !opened) return tl::unexpected(opened.error());
-  auto map = world::load_map(options.map);
+  auto map = world::load_map(options.map, options.load);
   if (!map) return tl::unexpected(map.error());
   state.map = std::make_shared<const world::Map>(std::move(*map));
   if (state.map->edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
@@ -130,7 +137,7 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
   }
   X_RC_ = X_RC;
-  start_ = localization::prior_at(*start, start_sigmas(state_->config.prior));
+  start_ = localization::prior_at(*start, start_sigmas(state_->config.prior, options));
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include "pipeline/render/depth_raster.h"
 #include "pipeline/runtime/stage_budget.h"
 #include "pipeline/stages/localize_stage.h"
+#include "pipeline/world/load.h"
 #include "pipeline/world/map.h"
 #include "platform/error.h"
 #include "src/config/localization.h"
@@ -31,6 +32,9 @@ struct LocalizeOptions {
   std::string odometry;
   std::string mount;
   std::string method;
+  world::LoadOptions load;          ///< of the map.
+  std::optional<double> sigma_m;    ///< of the given poses, instead of the configuration's.
+  std::optional<double> sigma_deg;  ///< likewise.
   std::string config;
   std::string csv;
   std::string video;

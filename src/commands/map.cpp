@@ -19,6 +19,7 @@
 #include "platform/clock.h"
 #include "src/commands/command.h"
 #include "src/commands/files.h"
+#include "src/commands/map_options.h"
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
 #include "src/input/pose_file.h"
@@ -31,7 +32,6 @@ namespace {
 
 struct Options {
   std::string file;
-  std::string up = "format";
   world::LoadOptions load;
   std::optional<double> wall_height_m;  ///< of a ROS map.
   world::WallParameters walls;
@@ -54,10 +54,7 @@ Result<void> claim_output(const Options& options, const FileKind& kind) {
 }
 
 Result<world::Map> load(const Options& options) {
-  world::LoadOptions how = options.load;
-  if (options.up == "z") how.up = world::UpAxis::kZ;
-  if (options.up == "y") how.up = world::UpAxis::kY;
-  return world::load_map(options.file, how);
+  return world::load_map(options.file, options.load);
 }
 
 struct Summary {
@@ -210,12 +207,7 @@ int run_picture(const Options& options) {
 
 void add_load_options(CLI::App& command, Options& options) {
   command.add_option("map", options.file, ".obj, .gltf, .glb, .cao or .cgsrmap")->required();
-  command.add_option("--up", options.up, "the file's axis that points up: format (glTF y, all else z), z or y")
-      ->check(CLI::IsMember({"format", "z", "y"}))
-      ->capture_default_str();
-  command.add_option("--scale", options.load.scale, "metres per unit of the file")
-      ->check(in_range(1e-6, 1e6))
-      ->capture_default_str();
+  add_map_frame_options(command, options.load);
   command.add_option("--weld", options.load.weld_m, "corners closer than this are one, in metres")
       ->check(in_range(1e-6, 1.0))
       ->capture_default_str();

@@ -1,8 +1,10 @@
 // cgsr localize on rendered images and on those that others made.
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -105,6 +107,38 @@ TEST_F(LocalizeFilm, CorrectsEachImageFromItsPrior) {
   EXPECT_THAT(run.output, HasSubstr("3 images, pose corrected in 3"));
   expect_right(file("each.csv"));
   EXPECT_EQ(nlohmann::json::parse(read_text(file("each.json"))).at("corrected"), kImages);
+}
+
+// The priors are 8 cm off.
+TEST_F(LocalizeFilm, TakesTheWidthOfThePriorsFromTheCommandLine) {
+  const auto sure = localize({"--priors", file("priors.csv"), "--sigma-m", "0.002", "--sigma-deg", "0.1"});
+  ASSERT_EQ(sure.exit_code, 0) << sure.errors;
+  EXPECT_THAT(sure.output, HasSubstr("3 images, pose corrected in 0"));
+  const auto wide = localize(
+      {"--priors", file("priors.csv"), "--sigma-m", "0.2", "--sigma-deg", "3", "--csv", file("wide.csv"), "--force"});
+  ASSERT_EQ(wide.exit_code, 0) << wide.errors;
+  expect_right(file("wide.csv"));
+}
+
+// The same room in centimetres with y up.
+TEST_F(LocalizeFilm, TakesAMapInItsOwnUnitsAndAxes) {
+  std::istringstream lines(read_text(file("room/map.obj")));
+  std::string other;
+  for (std::string line; std::getline(lines, line);) {
+    double x = 0.0;
+    double y = 0.0;
+    double z = 0.0;
+    const bool corner = std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3;
+    other += corner ? fmt::format("v {} {} {}\n", 100.0 * x, 100.0 * z, -100.0 * y) : line + "\n";
+  }
+  write_text(file("room/centimetres.obj"), other);
+  const auto run = localize({"--priors", file("priors.csv"), "--up", "y", "--scale", "0.01", "--csv", file("cm.csv")},
+                            file("room/centimetres.obj"));
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  expect_right(file("cm.csv"));
+  const auto wrong = localize({"--priors", file("priors.csv"), "--up", "x"});
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.errors, HasSubstr("format,z,y"));
 }
 
 TEST_F(LocalizeFilm, FollowsFromThePoseOfTheFirst) {
