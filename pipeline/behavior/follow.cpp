@@ -76,8 +76,11 @@ std::string_view to_string(FollowReason reason) {
   return "unknown";
 }
 
-Follow::Follow(const FollowParameters& parameters, std::optional<LearnedSize> learned)
-    : parameters_(parameters), reference_distance_m_(parameters.distance_m), motion_(parameters.confirm_s) {
+Follow::Follow(const FollowParameters& parameters, std::optional<LearnedSize> learned, const DriveLimits& limits)
+    : parameters_(parameters),
+      limits_(limits),
+      reference_distance_m_(parameters.distance_m),
+      motion_(parameters.confirm_s) {
   const bool stated =
       learned && learned->width_px > 0.0 && learned->height_px > 0.0 && parameters.learned_distance_m > 0.0;
   if (!stated) return;
@@ -108,9 +111,9 @@ FollowDecision Follow::decide(const Sighting& sighting, Duration elapsed) {
   const Velocity target = wanted(decision);
   // A long gap between images must not become a jump of speed.
   const double elapsed_s = std::min(to_seconds(elapsed), parameters_.max_box_age_s);
-  const double turn_ramp = parameters_.max_turn_acceleration_radps2;
-  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.max_acceleration_mps2,
-                           parameters_.max_deceleration_mps2, elapsed_s);
+  const double turn_ramp = limits_.max_turn_acceleration_radps2;
+  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, limits_.max_acceleration_mps2,
+                           limits_.max_deceleration_mps2, elapsed_s);
   goal_.left_radps = ramp(goal_.left_radps, target.left_radps, turn_ramp, turn_ramp, elapsed_s);
   decision.goal = goal_;
   return decision;
@@ -157,14 +160,13 @@ Velocity Follow::wanted(const FollowDecision& decision) const {
   if (decision.state != FollowState::kFollowing) return velocity;
 
   const double bearing = beyond_band(decision.bearing_rad, parameters_.bearing_band_rad);
-  velocity.left_radps =
-      std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps);
+  velocity.left_radps = std::clamp(parameters_.turn_per_s * bearing, -limits_.max_turn_radps, limits_.max_turn_radps);
 
   if (decision.distance_m <= 0.0) return velocity;  // not known: only turn
   const double error_m = beyond_band(decision.distance_m - parameters_.distance_m, parameters_.distance_band_m);
   const double facing = std::max(0.0, 1.0 - std::abs(decision.bearing_rad) / parameters_.max_driving_bearing_rad);
-  velocity.forward_mps = std::clamp(parameters_.approach_per_s * error_m * facing, -parameters_.max_backward_mps,
-                                    parameters_.max_forward_mps);
+  velocity.forward_mps =
+      std::clamp(parameters_.approach_per_s * error_m * facing, -limits_.max_backward_mps, limits_.max_forward_mps);
   return velocity;
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "pipeline/behavior/confirmed_motion.h"
+#include "pipeline/behavior/drive_limits.h"
 #include "pipeline/behavior/follow_parameters.h"
 #include "pipeline/behavior/velocity.h"
 #include "platform/box.h"
@@ -72,7 +73,7 @@ class Follow {
  public:
   /// \param learned  with learned_distance_m > 0 the reference for the distance; without either, the first box seen
   /// whole is it.
-  Follow(const FollowParameters& parameters, std::optional<LearnedSize> learned);
+  Follow(const FollowParameters& parameters, std::optional<LearnedSize> learned, const DriveLimits& limits = {});
 
   /// One image. \param elapsed  since the last call; negative counts as zero.
   FollowDecision decide(const Sighting& sighting, Duration elapsed);
@@ -85,6 +86,7 @@ class Follow {
   Velocity wanted(const FollowDecision& decision) const;
 
   FollowParameters parameters_;
+  DriveLimits limits_;
   std::optional<LearnedSize> reference_;
   double reference_distance_m_;
   Velocity goal_;

@@ -10,14 +10,8 @@ struct FollowParameters {
   double learned_distance_m = 0.0;
   double distance_band_m = 0.15;
   double approach_per_s = 0.5;
-  double max_forward_mps = 0.3;
-  double max_backward_mps = 0.0;
-  double max_acceleration_mps2 = 0.3;
-  double max_deceleration_mps2 = 0.6;
   double bearing_band_rad = 0.03;
   double turn_per_s = 1.2;
-  double max_turn_radps = 0.8;
-  double max_turn_acceleration_radps2 = 1.5;
   double max_driving_bearing_rad = 0.5;
   double max_box_age_s = 0.3;
   double search_after_s = 1.0;
@@ -36,21 +30,9 @@ struct FollowParameters {
                  "A distance error within this band is treated as zero.");
     visit.number("approach_per_s", self.approach_per_s, {0.0, 3.0}, "1/s",
                  "The forward speed per metre of distance error.");
-    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "The largest speed towards the object.");
-    visit.number(
-        "max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
-        "The largest speed away from an object that comes too near; the robot has no sensor that looks backwards.");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed increases.");
-    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed decreases.");
     visit.number("bearing_band_rad", self.bearing_band_rad, {0.0, 0.5}, "rad",
                  "A bearing within this band is treated as zero.");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s",
-                 "The largest turn rate towards the object.");
-    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "The largest rate at which the turn rate changes.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
                  "value at zero.");

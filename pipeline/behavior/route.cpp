@@ -73,10 +73,10 @@ RouteDecision Route::decide(const PlanarPose& here, Duration elapsed) {
   decision.state = at_end() ? RouteState::kArrived : RouteState::kDriving;
   decision.place = static_cast<int>(next_);
   const Velocity target = at_end() ? Velocity{} : wanted(here);
-  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.max_acceleration_mps2,
-                           parameters_.max_acceleration_mps2, elapsed_s);
-  goal_.left_radps = ramp(goal_.left_radps, target.left_radps, parameters_.max_turn_acceleration_radps2,
-                          parameters_.max_turn_acceleration_radps2, elapsed_s);
+  goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, limits_.max_acceleration_mps2,
+                           limits_.max_deceleration_mps2, elapsed_s);
+  goal_.left_radps = ramp(goal_.left_radps, target.left_radps, limits_.max_turn_acceleration_radps2,
+                          limits_.max_turn_acceleration_radps2, elapsed_s);
   decision.goal = goal_;
   return decision;
 }
@@ -96,8 +96,8 @@ Velocity Route::wanted(const PlanarPose& here) const {
   const double bearing =
       std::remainder(std::atan2(place.y_m - here.y_m, place.x_m - here.x_m) - here.heading_rad, 2.0 * std::numbers::pi);
   const double facing = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.max_driving_bearing_rad);
-  return {std::min(parameters_.forward_mps, parameters_.approach_per_s * way_m) * facing,
-          std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps)};
+  return {std::min({parameters_.forward_mps, limits_.max_forward_mps, parameters_.approach_per_s * way_m}) * facing,
+          std::clamp(parameters_.turn_per_s * bearing, -limits_.max_turn_radps, limits_.max_turn_radps)};
 }
 
 }  // namespace cgsr::behavior

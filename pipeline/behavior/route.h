@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/behavior/drive_limits.h"
 #include "pipeline/behavior/follow.h"
 #include "platform/error.h"
 #include "platform/parameters.h"
@@ -20,10 +21,7 @@ struct RouteParameters {
   double forward_mps = 0.35;
   double approach_per_s = 0.8;
   double turn_per_s = 1.2;
-  double max_turn_radps = 0.6;
   double max_driving_bearing_rad = 0.4;
-  double max_acceleration_mps2 = 0.4;
-  double max_turn_acceleration_radps2 = 1.5;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -37,14 +35,9 @@ struct RouteParameters {
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
                  "The speed per metre of remaining distance, where this is less than forward_mps.");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "The largest turn rate.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
                  "value at zero.");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed changes.");
-    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "The largest rate at which the turn rate changes.");
   }
 };
 
@@ -87,8 +80,8 @@ struct RouteDecision {
 /// Threads: one; decide allocates nothing.
 class Route {
  public:
-  Route(const RouteParameters& parameters, std::vector<Place> places)
-      : parameters_(parameters), places_(std::move(places)) {}
+  Route(const RouteParameters& parameters, std::vector<Place> places, const DriveLimits& limits = {})
+      : parameters_(parameters), limits_(limits), places_(std::move(places)) {}
 
   RouteDecision decide(const PlanarPose& here, Duration elapsed);
 
@@ -98,6 +91,7 @@ class Route {
   [[nodiscard]] Velocity wanted(const PlanarPose& here) const;
 
   RouteParameters parameters_;
+  DriveLimits limits_;
   std::vector<Place> places_;
   std::size_t next_ = 0;
   Velocity goal_;

@@ -151,10 +151,10 @@ SeekDecision SeekLamp::decide(const PlanarPose& here, const LampBelief& lamp, Du
   if (decision.halt) {
     goal_ = {};
   } else {
-    goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, parameters_.max_acceleration_mps2,
-                             parameters_.max_acceleration_mps2, elapsed_s_);
-    goal_.left_radps = ramp(goal_.left_radps, target.left_radps, parameters_.max_turn_acceleration_radps2,
-                            parameters_.max_turn_acceleration_radps2, elapsed_s_);
+    goal_.forward_mps = ramp(goal_.forward_mps, target.forward_mps, limits_.max_acceleration_mps2,
+                             limits_.max_deceleration_mps2, elapsed_s_);
+    goal_.left_radps = ramp(goal_.left_radps, target.left_radps, limits_.max_turn_acceleration_radps2,
+                            limits_.max_turn_acceleration_radps2, elapsed_s_);
   }
   decision.goal = goal_;
   decision.state = state_;
@@ -426,15 +426,15 @@ Velocity SeekLamp::towards(const PlanarPose& here, const Place& place) const {
   const double bearing = bearing_of(here, place);
   const double ahead = std::max(0.0, 1.0 - std::abs(bearing) / parameters_.max_driving_bearing_rad);
   const double way = way_between(here, place);
-  return {std::min(parameters_.forward_mps, parameters_.approach_per_s * way) * ahead,
-          std::clamp(parameters_.turn_per_s * bearing, -parameters_.max_turn_radps, parameters_.max_turn_radps)};
+  return {std::min({parameters_.forward_mps, limits_.max_forward_mps, parameters_.approach_per_s * way}) * ahead,
+          std::clamp(parameters_.turn_per_s * bearing, -limits_.max_turn_radps, limits_.max_turn_radps)};
 }
 
 Velocity SeekLamp::facing(const PlanarPose& here, double heading_rad, bool& done) const {
   const double off = std::remainder(heading_rad - here.heading_rad, kTurn);
   done = std::abs(off) <= parameters_.facing_deg * kRadPerDeg;
   // Slower than this the base would not turn at all.
-  const double rate = std::clamp(parameters_.turn_per_s * std::abs(off), 0.08, parameters_.max_turn_radps);
+  const double rate = std::min(limits_.max_turn_radps, std::max(parameters_.turn_per_s * std::abs(off), 0.08));
   return {0.0, std::copysign(rate, off)};
 }
 

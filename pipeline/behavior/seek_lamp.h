@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "pipeline/behavior/drive_limits.h"
 #include "pipeline/behavior/free_floor.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/velocity.h"
@@ -32,10 +33,7 @@ struct SeekLampParameters {
   double forward_mps = 0.35;
   double approach_per_s = 0.8;
   double turn_per_s = 1.2;
-  double max_turn_radps = 0.5;
   double max_driving_bearing_rad = 0.35;
-  double max_acceleration_mps2 = 0.3;
-  double max_turn_acceleration_radps2 = 1.0;
   double reached_m = 0.10;
   double facing_deg = 2.0;
   double max_pose_loss_s = 2.0;
@@ -74,14 +72,9 @@ struct SeekLampParameters {
     visit.number("approach_per_s", self.approach_per_s, {0.05, 5.0}, "1/s",
                  "The speed per metre of remaining distance, where this is less than forward_mps.");
     visit.number("turn_per_s", self.turn_per_s, {0.0, 5.0}, "1/s", "The turn rate per radian of bearing.");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.05, 2.0}, "rad/s", "The largest turn rate.");
     visit.number("max_driving_bearing_rad", self.max_driving_bearing_rad, {0.05, 3.2}, "rad",
                  "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
                  "value at zero.");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed changes.");
-    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "The largest rate at which the turn rate changes.");
     visit.number("reached_m", self.reached_m, {0.01, 1.0}, "m", "A place counts as reached within this distance.");
     visit.number("facing_deg", self.facing_deg, {0.1, 30.0}, "deg", "A heading counts as reached within this angle.");
     visit.number("max_pose_loss_s", self.max_pose_loss_s, {0.1, 60.0}, "s",
@@ -183,8 +176,8 @@ class SeekLamp {
  public:
   /// \param floor  may be null: then there is no map, and no way is free.
   SeekLamp(const SeekLampParameters& parameters, std::shared_ptr<const FreeFloor> floor, const BoardPlace& board,
-           const KeptArea& area)
-      : parameters_(parameters), floor_(std::move(floor)), board_(board), area_(area) {}
+           const KeptArea& area, const DriveLimits& limits = {})
+      : parameters_(parameters), limits_(limits), floor_(std::move(floor)), board_(board), area_(area) {}
 
   SeekDecision decide(const PlanarPose& here, const LampBelief& lamp, Duration elapsed);
 
@@ -214,6 +207,7 @@ class SeekLamp {
   [[nodiscard]] double board_to_lamp_m(const PlanarPose& here) const;
 
   SeekLampParameters parameters_;
+  DriveLimits limits_;
   std::shared_ptr<const FreeFloor> floor_;
   BoardPlace board_;
   KeptArea area_;

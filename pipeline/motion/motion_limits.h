@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hal/drive.h"
+#include "pipeline/behavior/drive_limits.h"
 #include "platform/parameters.h"
 
 namespace cgsr {
@@ -34,16 +35,9 @@ struct KeepInParameters {
   }
 };
 
-/// How fast the wheels may be told to go, and when they are told to stop. The robot is blind backwards and has no
-/// obstacle sensor: the defaults are slow and never backwards.
+/// How fast the wheels may be told to go, and when they are told to stop.
 /// Ours: the dissertation (3.3.2) gives no limits of its Segway RMP.
-struct MotionParameters {
-  double max_forward_mps = 0.4;
-  double max_backward_mps = 0.0;
-  double max_acceleration_mps2 = 0.4;
-  double max_deceleration_mps2 = 0.8;
-  double max_turn_radps = 1.0;
-  double max_turn_acceleration_radps2 = 2.0;
+struct MotionParameters : behavior::DriveLimits {
   double reaction_s = 0.2;
   double goal_timeout_s = 0.150;
   double feedback_timeout_s = 0.100;
@@ -53,16 +47,7 @@ struct MotionParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.number("max_forward_mps", self.max_forward_mps, {0.0, 1.5}, "m/s", "The largest forward speed.");
-    visit.number("max_backward_mps", self.max_backward_mps, {0.0, 0.5}, "m/s",
-                 "The largest backward speed; the robot has no sensor that looks backwards.");
-    visit.number("max_acceleration_mps2", self.max_acceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed increases.");
-    visit.number("max_deceleration_mps2", self.max_deceleration_mps2, {0.05, 3.0}, "m/s²",
-                 "The largest rate at which the speed decreases towards a slower goal; a stop does not wait for it.");
-    visit.number("max_turn_radps", self.max_turn_radps, {0.0, 2.0}, "rad/s", "The largest turn rate.");
-    visit.number("max_turn_acceleration_radps2", self.max_turn_acceleration_radps2, {0.1, 10.0}, "rad/s²",
-                 "The largest rate at which the turn rate changes.");
+    DriveLimits::describe(self, visit);
     visit.number("reaction_s", self.reaction_s, {0.0, 1.0}, "s",
                  "The time from a command until the base obeys it, which the keep-in area accounts for.");
     visit.number("goal_timeout_s", self.goal_timeout_s, {0.02, 0.5}, "s",

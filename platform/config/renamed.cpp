@@ -115,6 +115,16 @@ constexpr std::array kRenamings{
     Renaming{"y_min_m", "min_y_m"},
 };
 
+// Keys that tasks had of their own.
+constexpr std::array kMoved{
+    Renaming{"max_acceleration_mps2", "motion.max_acceleration_mps2"},
+    Renaming{"max_backward_mps", "motion.max_backward_mps"},
+    Renaming{"max_deceleration_mps2", "motion.max_deceleration_mps2"},
+    Renaming{"max_forward_mps", "motion.max_forward_mps"},
+    Renaming{"max_turn_acceleration_radps2", "motion.max_turn_acceleration_radps2"},
+    Renaming{"max_turn_radps", "motion.max_turn_radps"},
+};
+
 /// \return whether a section with the keys `known` has the key, which may lie in one of its sections.
 bool is_known(std::string_view key, const std::vector<std::string_view>& known) {
   return std::find(known.begin(), known.end(), key.substr(0, key.find('.'))) != known.end();
@@ -125,6 +135,9 @@ bool is_known(std::string_view key, const std::vector<std::string_view>& known) 
 std::optional<NewName> renamed(std::string_view key, const std::vector<std::string_view>& known) {
   for (const Renaming& renaming : kRenamings) {
     if (renaming.before == key && is_known(renaming.now, known)) return NewName{renaming.now, renaming.remark};
+  }
+  for (const Renaming& moved : kMoved) {
+    if (moved.before == key) return NewName{moved.now, "one set of limits holds for every task"};
   }
   return std::nullopt;
 }

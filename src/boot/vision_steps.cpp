@@ -101,19 +101,20 @@ behavior::SeekLamp seek_lamp_of(const RobotState& state) {
   return {config.task.lamp, map ? std::make_shared<behavior::FreeFloor>(*map, config.task.lamp.floor) : nullptr,
           behavior::BoardPlace{board.position_m[0], board.position_m[2]},
           behavior::KeptArea{area.enabled, area.min_x_m + kAreaMargin_m, area.max_x_m - kAreaMargin_m,
-                             area.min_y_m + kAreaMargin_m, area.max_y_m - kAreaMargin_m}};
+                             area.min_y_m + kAreaMargin_m, area.max_y_m - kAreaMargin_m},
+          config.motion};
 }
 
 Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
   const config::Robot& config = state.setup.config;
   if (config.task.kind == config::TaskKind::kLamp) return std::make_unique<stages::LampTask>(seek_lamp_of(state));
   if (config.task.kind == config::TaskKind::kFollow) {
-    return std::make_unique<stages::FollowTask>(behavior::Follow(config.follow, state.vision.learned),
+    return std::make_unique<stages::FollowTask>(behavior::Follow(config.follow, state.vision.learned, config.motion),
                                                 optics_of(state));
   }
   auto places = behavior::parse_places(config.task.route.places_m);
   if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
-  return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places)));
+  return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places), config.motion));
 }
 
 }  // namespace

@@ -22,12 +22,13 @@ TEST(FollowProperty, KeepsItsLimits) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     Chance chance(seed);
     FollowParameters parameters;
-    parameters.max_forward_mps = chance.draw(0.1, 1.0);
-    parameters.max_turn_radps = chance.draw(0.5, 2.0);
-    parameters.max_acceleration_mps2 = chance.draw(0.1, 1.0);
-    parameters.max_deceleration_mps2 = chance.draw(0.1, 1.0);
+    DriveLimits limits;
+    limits.max_forward_mps = chance.draw(0.1, 1.0);
+    limits.max_turn_radps = chance.draw(0.5, 2.0);
+    limits.max_acceleration_mps2 = chance.draw(0.1, 1.0);
+    limits.max_deceleration_mps2 = chance.draw(0.1, 1.0);
     parameters.max_search_s = 5.0;
-    Follow follow(parameters, {});
+    Follow follow(parameters, {}, limits);
     Velocity before;
     bool visible = false;
     Sighting sighting = nothing();
@@ -43,15 +44,14 @@ TEST(FollowProperty, KeepsItsLimits) {
       const auto [goal, state, reason, bearing, distance, halt] = follow.decide(sighting, elapsed);
 
       ASSERT_GE(goal.forward_mps, 0.0) << image;
-      ASSERT_LE(goal.forward_mps, parameters.max_forward_mps);
-      ASSERT_LE(std::abs(goal.left_radps), parameters.max_turn_radps);
+      ASSERT_LE(goal.forward_mps, limits.max_forward_mps);
+      ASSERT_LE(std::abs(goal.left_radps), limits.max_turn_radps);
       const double gain = goal.forward_mps - before.forward_mps;
-      ASSERT_LE(gain, parameters.max_acceleration_mps2 * elapsed_s + 1e-12);
+      ASSERT_LE(gain, limits.max_acceleration_mps2 * elapsed_s + 1e-12);
       if (!halt) {
-        ASSERT_GE(gain, -parameters.max_deceleration_mps2 * elapsed_s - 1e-12);
+        ASSERT_GE(gain, -limits.max_deceleration_mps2 * elapsed_s - 1e-12);
       }
-      ASSERT_LE(std::abs(goal.left_radps - before.left_radps),
-                parameters.max_turn_acceleration_radps2 * elapsed_s + 1e-12);
+      ASSERT_LE(std::abs(goal.left_radps - before.left_radps), limits.max_turn_acceleration_radps2 * elapsed_s + 1e-12);
       if (state != FollowState::kFollowing) {
         ASSERT_TRUE(halt);
         ASSERT_EQ(goal.forward_mps, 0.0);

@@ -74,9 +74,9 @@ TEST(Follow, NeverBacksAwayUnlessToldSo) {
   Follow blind(stated_size(), kAtTwoMetres);
   EXPECT_EQ(repeat(blind, seen(kCentre_px, 200.0, 300.0, 90.0), 120).goal.forward_mps, 0.0);
 
-  auto parameters = stated_size();
-  parameters.max_backward_mps = 0.1;
-  Follow brave(parameters, kAtTwoMetres);
+  DriveLimits limits;
+  limits.max_backward_mps = 0.1;
+  Follow brave(stated_size(), kAtTwoMetres, limits);
   EXPECT_EQ(repeat(brave, seen(kCentre_px, 200.0, 300.0, 90.0), 120).goal.forward_mps, -0.1);
 }
 
@@ -103,9 +103,9 @@ TEST(Follow, IsNotFooledByABoxThatTheImageCuts) {
   const auto at_bottom = follow.decide(seen(kCentre_px, 120.0, 60.0, 420.0), kImagePeriod);
   EXPECT_NEAR(at_bottom.distance_m, 1.0, 1e-12) << "by its width";
 
-  auto parameters = stated_size();
-  parameters.max_backward_mps = 0.1;
-  Follow other(parameters, kAtTwoMetres);
+  DriveLimits limits;
+  limits.max_backward_mps = 0.1;
+  Follow other(stated_size(), kAtTwoMetres, limits);
   const auto at_corner = repeat(other, seen(10.0, 20.0, 30.0, 0.0), 60);
   EXPECT_EQ(at_corner.state, FollowState::kFollowing);
   EXPECT_EQ(at_corner.reason, FollowReason::kSeenAtEdge);

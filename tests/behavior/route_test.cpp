@@ -61,6 +61,24 @@ TEST(Route, EndsAtTheLastPlaceWhenItIsNoRound) {
   EXPECT_EQ(decision.goal.forward_mps, 0.0);
 }
 
+TEST(Route, KeepsTheLimitsOfTheRobotWhereTheyAreTighterThanItsOwnSpeed) {
+  DriveLimits limits;
+  limits.max_forward_mps = 0.1;
+  limits.max_turn_radps = 0.2;
+  limits.max_acceleration_mps2 = 0.05;
+  RouteParameters parameters;
+  parameters.forward_mps = 0.5;
+  Route ahead(parameters, parse_places("5, 0").value(), limits);
+  const PlanarPose here{true, 0.0, 0.0, 0.0};
+  EXPECT_NEAR(ahead.decide(here, kImagePeriod).goal.forward_mps, 0.05 * to_seconds(kImagePeriod), 1e-12);
+  RouteDecision decision;
+  for (int i = 0; i < 150; ++i) decision = ahead.decide(here, kImagePeriod);
+  EXPECT_DOUBLE_EQ(decision.goal.forward_mps, 0.1);
+  Route beside(parameters, parse_places("0, 5").value(), limits);
+  for (int i = 0; i < 150; ++i) decision = beside.decide(here, kImagePeriod);
+  EXPECT_DOUBLE_EQ(decision.goal.left_radps, 0.2);
+}
+
 TEST(RouteFault, WithoutAPoseItHalts) {
   Route route({}, square());
   PlanarPose here{true, 0.0, 0.0, 0.0};

@@ -109,6 +109,16 @@ struct Limits {
   }
 };
 
+// Follow, route and lamp had limits of their own.
+TEST(Reader, NamesTheSectionThatAKeyHasMovedTo) {
+  const auto document = Document::parse("max_turn_radps = 0.3\n", "robot.toml");
+  ASSERT_TRUE(document);
+  const auto limits = read<Limits>(*document);
+  ASSERT_FALSE(limits);
+  EXPECT_THAT(limits.error().message,
+              testing::HasSubstr("robot.toml:1: max_turn_radps is unknown; it is called motion.max_turn_radps now"));
+}
+
 // The section decides which of two new names an old one has now.
 TEST(Reader, NamesThePresentNameOfAKeyThatWasRenamed) {
   const auto document = Document::parse("forward_limit_mps = 0.3\nlowest = 1\n", "robot.toml");

@@ -99,7 +99,7 @@ TEST(MotionLoop, DefaultInputsPermitNothing) {
 }
 
 TEST(MotionLoop, ArmsItselfOnceWhereTheConfigurationSaysSo) {
-  MotionParameters parameters;
+  MotionParameters parameters = quick();
   parameters.armed_at_start = true;
   Rig rig(parameters);
   EXPECT_FALSE(rig.steps(99).armed);
@@ -112,7 +112,7 @@ TEST(MotionLoop, ArmsItselfOnceWhereTheConfigurationSaysSo) {
 }
 
 TEST(MotionLoop, StopBeforeTheFirstArmingCancelsIt) {
-  MotionParameters parameters;
+  MotionParameters parameters = quick();
   parameters.armed_at_start = true;
   Rig rig(parameters);
   rig.inputs.stop = true;
@@ -122,7 +122,7 @@ TEST(MotionLoop, StopBeforeTheFirstArmingCancelsIt) {
 }
 
 TEST(MotionLoop, DisarmBeforeTheFirstArmingCancelsIt) {
-  MotionParameters parameters;
+  MotionParameters parameters = quick();
   parameters.armed_at_start = true;
   Rig rig(parameters);
   rig.request(ArmRequest::kDisarm);
@@ -158,7 +158,7 @@ TEST(MotionLoop, IgnoresAGoalOlderThanTheNewest) {
 }
 
 TEST(MotionLoop, DoesNotDriveOutOfItsArea) {
-  MotionParameters parameters;
+  MotionParameters parameters = quick();
   parameters.keep_in.max_x_m = 0.5;
   Rig rig(parameters);
   rig.arm_and_move({0.4, 0.0});
@@ -175,7 +175,7 @@ TEST(MotionLoop, DoesNotDriveOutOfItsArea) {
 
 // Where the last odometry was, the robot no longer is.
 TEST(MotionLoop, TakesLessNearTheEdgeWhenOdometryGrowsOld) {
-  MotionParameters parameters;
+  MotionParameters parameters = quick();
   parameters.keep_in.max_x_m = 1.15;
   Rig rig(parameters);
   rig.arm_and_move({0.4, 0.0});

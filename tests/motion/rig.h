@@ -12,10 +12,20 @@ inline bool is_zero(const hal::Twist& twist) {
   return twist.forward_mps == 0.0 && twist.left_radps == 0.0;
 }
 
+/// A robot that is a little quicker than the defaults.
+inline MotionParameters quick() {
+  MotionParameters motion;
+  motion.max_forward_mps = motion.max_acceleration_mps2 = 0.4;
+  motion.max_deceleration_mps2 = 0.8;
+  motion.max_turn_radps = 1.0;
+  motion.max_turn_acceleration_radps2 = 2.0;
+  return motion;
+}
+
 /// A motion loop on a scripted base, stepped at its cycle, with everything well unless a test says otherwise.
 template <class DriveType = ScriptedDrive>
 struct Rig {
-  explicit Rig(const MotionParameters& motion = {}, MotionLoop::Mode mode = MotionLoop::Mode::kLive)
+  explicit Rig(const MotionParameters& motion = quick(), MotionLoop::Mode mode = MotionLoop::Mode::kLive)
       : parameters(motion),
         owned(std::make_unique<DriveType>()),
         drive(owned.get()),

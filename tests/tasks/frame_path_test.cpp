@@ -39,7 +39,7 @@ class FramePath : public ::testing::Test {
     optics.fx_px = config_.camera.pinhole.fx_px;
     optics.cx_px = config_.camera.pinhole.cx_px;
     parts.make<stages::DecideStage>(
-        std::make_unique<stages::FollowTask>(behavior::Follow(config_.follow, std::nullopt), optics));
+        std::make_unique<stages::FollowTask>(behavior::Follow(config_.follow, std::nullopt, config_.motion), optics));
     return parts;
   }
 
