@@ -15,6 +15,8 @@ Decision DecideStage::update(const ImageLease& image, const FrameResult& frame) 
     decision.requests.lamps[static_cast<std::size_t>(LampLine::kProbeLamp)] = report->requests_probe_lamp;
     decision.requests.lamps[static_cast<std::size_t>(LampLine::kRoomLamp)] = report->requests_room_lamp;
   }
+  if (decision.state != state_) decision.events.add({"task", decision.state, decision.reason});
+  state_ = decision.state;
   return decision;
 }
 

@@ -28,6 +28,7 @@ class DecideStage {
  private:
   std::unique_ptr<Task> task_;
   MonoTime last_image_{};
+  std::string_view state_;  // of the task, at the last image
 };
 
 }  // namespace cgsr::stages

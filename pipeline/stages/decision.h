@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "pipeline/behavior/velocity.h"
+#include "pipeline/stages/events.h"
 #include "pipeline/stages/requests.h"
 #include "platform/description.h"
 
@@ -16,6 +17,7 @@ struct Decision {
   std::string_view state;   ///< of the task, for people; text that lives as long as the program.
   std::string_view reason;  ///< of the last change of state.
   Requests requests;        ///< to stages and devices, for the next image.
+  Events events{};          ///< of this image: the stage adds the change of state, the task what it has to say beside.
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

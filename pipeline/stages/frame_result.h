@@ -41,4 +41,16 @@ void for_each_output(Frame& frame, Read read) {
   read("shade", "The state of the shadow masks.", frame.shade);
 }
 
+/// Shows every event of this image to a reader, in the order of the outputs.
+/// \param read  called with an Event.
+template <class Read>
+void for_each_event(const FrameResult& frame, Read read) {
+  for_each_output(frame, [&read](std::string_view, std::string_view, const auto& output) {
+    if constexpr (requires { output.value.events; }) {
+      if (!output.fresh()) return;
+      for (const Event& event : output.value.events) read(event);
+    }
+  });
+}
+
 }  // namespace cgsr::stages

@@ -47,6 +47,10 @@ PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image) {
   const geometry::Pose X_WR = pose.camera.X_WC * X_CR_;
   const bool known = pose.camera.state == localization::TrackState::kTracking ||
                      pose.camera.state == localization::TrackState::kRecovered;
+  if (pose.camera.state != state_) {
+    pose.events.add({"pose", to_string(pose.camera.state), to_string(pose.camera.correction.reason)});
+  }
+  state_ = pose.camera.state;
   pose.robot = {known, X_WR.translation().x(), X_WR.translation().y(), geometry::heading_of(X_WR)};
   return pose;
 }

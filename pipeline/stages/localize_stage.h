@@ -14,6 +14,7 @@
 #include "pipeline/localization/pose_tracker.h"
 #include "pipeline/runtime/aged.h"
 #include "pipeline/stages/decode_stage.h"
+#include "pipeline/stages/events.h"
 #include "pipeline/world/map.h"
 #include "platform/description.h"
 
@@ -24,6 +25,7 @@ struct PoseEstimate {
   bool has_map = false;              ///< else nothing below means anything.
   localization::TrackedPose camera;  ///< X_WC, its covariance, and what this image did to it.
   behavior::PlanarPose robot;        ///< X_WR on its floor.
+  Events events{};                   ///< changes of the state.
 
   [[nodiscard]] bool known() const { return has_map && robot.known; }
 
@@ -102,7 +104,8 @@ class LocalizeStage {
   localization::Localizer localizer_;
   localization::PoseTracker tracker_;
   std::vector<std::uint8_t> self_mask_;
-  std::optional<geometry::Pose> X_OR_;  // at the last image
+  std::optional<geometry::Pose> X_OR_;                                  // at the last image
+  localization::TrackState state_ = localization::TrackState::kUnsure;  // likewise
 };
 
 }  // namespace cgsr::stages

@@ -17,6 +17,22 @@ std::string_view doubt_of(const illumination::CheckReport& check, std::string_vi
   return check.state == CheckState::kFailed ? failed : std::string_view();
 }
 
+std::string_view source_of(CheckedLamp lamp) {
+  return lamp == CheckedLamp::kProbeLamp ? "check by the probe lamp" : "check by the room lamp";
+}
+
+/// Adds the end of a check; while it runs there is nothing to tell.
+void add_end(CheckedLamp lamp, const illumination::CheckReport& check, Events& events) {
+  if (check.state != CheckState::kPassed && check.state != CheckState::kFailed && check.state != CheckState::kFault) {
+    return;
+  }
+  events.add({source_of(lamp),
+              illumination::to_string(check.state),
+              illumination::to_string(check.verdict),
+              {{{"pairs", static_cast<double>(check.tries), ""}}},
+              1});
+}
+
 }  // namespace
 
 bool LampReport::trusted() const {
@@ -91,7 +107,37 @@ LampReport ProbesStage::update(const ImageView& image, const PlacedRobot* robot,
   last_.known = last_.known && last_.trusted();
   last_.requests_probe_lamp = probe_lamp_check_.wants_on();
   last_.requests_room_lamp = room_lamp_check_.wants_on();
+  last_.events = changes();
+  reported_ = state();
   return last_;
+}
+
+ProbesStage::State ProbesStage::state() const {
+  const bool visible =
+      last_.observation == ObservationStatus::kSeen || last_.observation == ObservationStatus::kNoShadow;
+  return {visible, last_.known, last_.probes_check.state, last_.lamp_proof.state};
+}
+
+Events ProbesStage::changes() const {
+  Events events;
+  const State now = state();
+  if (now.probes_check != reported_.probes_check) add_end(CheckedLamp::kProbeLamp, last_.probes_check, events);
+  if (now.lamp_proof != reported_.lamp_proof) add_end(CheckedLamp::kRoomLamp, last_.lamp_proof, events);
+  if (now.visible != reported_.visible) {
+    events.add({"probes", now.visible ? "visible" : illumination::to_string(last_.observation), {}});
+  }
+  if (now.known && !reported_.known) {
+    const auto& p = last_.lamp.p_WL;
+    const double sigma_m = std::sqrt(last_.lamp.covariance.trace());
+    events.add({"lamp",
+                "located",
+                {},
+                {{{"x", p.x(), "m"}, {"y", p.y(), "m"}, {"z", p.z(), "m"}, {"sigma", sigma_m, "m"}}},
+                4});
+  } else if (!now.known && reported_.known) {
+    events.add({"lamp", "lost", reason_of(last_)});
+  }
+  return events;
 }
 
 void ProbesStage::begin_check(CheckedLamp lamp, const PlacedRobot* robot) {

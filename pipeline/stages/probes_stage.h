@@ -11,6 +11,7 @@
 #include "pipeline/illumination/lamp.h"
 #include "pipeline/illumination/lamp_filter.h"
 #include "pipeline/illumination/probe_observation.h"
+#include "pipeline/stages/events.h"
 #include "pipeline/stages/localize_stage.h"
 #include "pipeline/stages/requests.h"
 #include "platform/description.h"
@@ -41,6 +42,7 @@ struct LampReport {
   illumination::CheckReport lamp_proof;    ///< the room lamp switched: what that says of the shadows.
   bool requests_probe_lamp = false;        ///< the level that a check requires of the probe lamp's line,
   bool requests_room_lamp = false;         ///< and of the room lamp's.
+  Events events{};                         ///< the lamp found or lost, the probes in view or not, checks that ended.
 
   /// A lamp is being switched: what is said of shadows is the last image's before that.
   [[nodiscard]] bool switching() const {
@@ -115,6 +117,7 @@ class ProbesStage {
  private:
   void begin_check(illumination::CheckedLamp lamp, const PlacedRobot* robot);
   void observe(const ImageView& image, const PlacedRobot* robot, LampReport& report);
+  [[nodiscard]] Events changes() const;
 
   illumination::LampParameters lamp_;
   illumination::ProbeLampParameters probe_lamp_;
@@ -124,6 +127,16 @@ class ProbesStage {
   illumination::ActiveCheck probe_lamp_check_;
   illumination::ActiveCheck room_lamp_check_;
   LampReport last_;
+
+  /// What events tell the changes of.
+  struct State {
+    bool visible = true;
+    bool known = false;
+    illumination::CheckState probes_check{};
+    illumination::CheckState lamp_proof{};
+  };
+  [[nodiscard]] State state() const;
+  State reported_;
 };
 
 }  // namespace cgsr::stages

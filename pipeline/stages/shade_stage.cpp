@@ -54,7 +54,7 @@ ShadeStage::ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Ca
 std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const runtime::Aged<PoseEstimate>& pose,
                                               const runtime::Aged<LampReport>& lamp) {
   const PoseEstimate* const now = pose.within(Duration::zero());
-  if (now == nullptr || !now->known()) return ShadowMasks{ShadeStatus::kPoseUnknown, {}};
+  if (now == nullptr || !now->known()) return with_events({ShadeStatus::kPoseUnknown, {}});
   const LampReport* const report = lamp.within(kMaxLampAge);
   return update(budget, now->camera.X_WC, now->camera.covariance,
                 report != nullptr && report->known ? &report->lamp : nullptr);
@@ -63,6 +63,20 @@ std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const runtime:
 std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const geometry::Pose& X_WC,
                                               const geometry::Matrix6d& covariance,
                                               const illumination::KnownLamp* lamp) {
+  auto masks = masks_for(budget, X_WC, covariance, lamp);
+  if (!masks) return std::nullopt;
+  return with_events(std::move(*masks));
+}
+
+ShadowMasks ShadeStage::with_events(ShadowMasks output) {
+  if (output.status != status_) output.events.add({"shadow masks", to_string(output.status), {}});
+  status_ = output.status;
+  return output;
+}
+
+std::optional<ShadowMasks> ShadeStage::masks_for(WorkBudget& budget, const geometry::Pose& X_WC,
+                                                 const geometry::Matrix6d& covariance,
+                                                 const illumination::KnownLamp* lamp) {
   if (lamp == nullptr) return ShadowMasks{ShadeStatus::kNoLamp, {}};
   const double lamp_sigma_m = max_sigma(lamp->covariance);
   if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) return ShadowMasks{ShadeStatus::kLampUnsure, {}};

@@ -9,6 +9,7 @@
 #include "pipeline/geometry/pose.h"
 #include "pipeline/illumination/lamp_filter.h"
 #include "pipeline/render/shadow_volumes.h"
+#include "pipeline/stages/events.h"
 #include "pipeline/stages/probes_stage.h"
 #include "pipeline/world/map.h"
 #include "platform/description.h"
@@ -51,6 +52,7 @@ std::string_view to_string(ShadeStatus status);
 struct ShadowMasks {
   ShadeStatus status = ShadeStatus::kNoMap;
   Lease<render::ShadeMasks> masks;  ///< of this image; empty: none, and `status` says why.
+  Events events{};                  ///< changes of the status.
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -85,6 +87,9 @@ class ShadeStage {
                                const illumination::KnownLamp* lamp);
 
  private:
+  std::optional<Output> masks_for(WorkBudget& budget, const geometry::Pose& X_WC, const geometry::Matrix6d& covariance,
+                                  const illumination::KnownLamp* lamp);
+  Output with_events(Output output);
   [[nodiscard]] Eigen::Vector3d place_to_prepare(const Eigen::Vector3d& p_WL) const;
 
   std::shared_ptr<const world::Map> map_;
@@ -93,6 +98,7 @@ class ShadeStage {
   render::ShadowVolumes volumes_;
   Pool<render::ShadeMasks> masks_;
   bool looked_last_ = false;  ///< the last turn gave masks: while a new place is prepared, the next does not.
+  ShadeStatus status_ = ShadeStatus::kNoMap;  // of the last output
 };
 
 }  // namespace cgsr::stages

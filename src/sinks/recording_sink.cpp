@@ -15,13 +15,14 @@ McapChannel channel_of(const std::string& name, std::string_view meaning) {
   return json_channel("/cgsr/" + name, "cgsr/" + name, json_schema<Output>("cgsr/" + name, meaning));
 }
 
-/// The outputs in their order, then motion, then the images.
+/// The outputs in their order, then events, motion, and the images.
 std::vector<McapChannel> channels() {
   std::vector<McapChannel> all;
   const stages::FrameResult frame;
   stages::for_each_output(frame, [&all](std::string_view name, std::string_view meaning, const auto& output) {
     all.push_back(channel_of<std::remove_cvref_t<decltype(output.value)>>(std::string(name), meaning));
   });
+  all.push_back(channel_of<stages::Event>("events", "A change of a state, of a stage or the task."));
   all.push_back(channel_of<MotionStatus>("motion", "A cycle of the motion loop."));
   all.push_back(compressed_image_channel("/camera/image/compressed"));
   return all;
@@ -34,7 +35,7 @@ Result<std::unique_ptr<RecordingSink>> RecordingSink::create(const std::string& 
   const std::size_t count = all.size();
   auto recorder = Recorder::create(path, std::move(all));
   if (!recorder) return tl::unexpected(recorder.error());
-  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder), count - 2, count - 1));
+  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder), count - 3));
 }
 
 template <class Output>
@@ -50,12 +51,13 @@ Result<void> RecordingSink::on_image(const ImageReport& report) {
   stages::for_each_output(report.frame, [&](std::string_view, std::string_view, const auto& output) {
     post(channel++, stamp, output.value);
   });
-  if (report.picture != nullptr) recorder_->post(image_, stamp, report.picture->image.view());
+  stages::for_each_event(report.frame, [&](const stages::Event& event) { post(events(), stamp, event); });
+  if (report.picture != nullptr) recorder_->post(images(), stamp, report.picture->image.view());
   return recorder_->step();
 }
 
 Result<void> RecordingSink::on_control_cycle(const MotionStatus& status) {
-  post(motion_, status.stamp, status);
+  post(motion(), status.stamp, status);
   return {};
 }
 

@@ -8,8 +8,8 @@
 
 namespace cgsr::sinks {
 
-/// A recording of the run in MCAP, which Foxglove opens: the described outputs of the stages and of the motion loop as JSON, a topic each, and
-/// the images as JPEG. What finds no room is lost and counted.
+/// A recording of the run in MCAP, which Foxglove opens: the described outputs of the stages, events and the motion loop as JSON, a topic each,
+/// and the images as JPEG. What finds no room is lost and counted.
 class RecordingSink final : public Sink {
  public:
   static Result<std::unique_ptr<RecordingSink>> create(const std::string& path);
@@ -20,15 +20,19 @@ class RecordingSink final : public Sink {
   void summarize(Summary& summary) override;
 
  private:
-  RecordingSink(std::unique_ptr<Recorder> recorder, std::size_t motion, std::size_t image)
-      : recorder_(std::move(recorder)), motion_(motion), image_(image) {}
+  RecordingSink(std::unique_ptr<Recorder> recorder, std::size_t outputs)
+      : recorder_(std::move(recorder)), outputs_(outputs) {}
+
+  // The channels: those of the outputs are their places in the list.
+  [[nodiscard]] std::size_t events() const { return outputs_; }
+  [[nodiscard]] std::size_t motion() const { return outputs_ + 1; }
+  [[nodiscard]] std::size_t images() const { return outputs_ + 2; }
 
   template <class Output>
   void post(std::size_t channel, MonoTime stamp, const Output& output);
 
   std::unique_ptr<Recorder> recorder_;
-  std::size_t motion_;  // their channels; those of the outputs are their places in the list
-  std::size_t image_;
+  std::size_t outputs_;
   std::string message_;
 };
 

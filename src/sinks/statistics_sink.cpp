@@ -13,6 +13,47 @@ double seconds_of(MonoTime stamp) {
   return to_seconds(stamp.time_since_epoch());
 }
 
+constexpr std::size_t kMaxWords = 64;  // of one field; more are no states
+
+/// Counts what the fields of one output are, in their order; a list has another length every time and is left out.
+class FieldCounter {
+ public:
+  static constexpr bool kOfType = false;
+
+  explicit FieldCounter(std::vector<FieldStatistics>& fields) : fields_(fields) {}
+
+  void field(const Field& field) {
+    if (lists_ > 0) return;
+    if (place_ == fields_.size()) fields_.push_back({std::string(field.name), field.kind, field.optional, 0, {}});
+    FieldStatistics& statistics = fields_[place_++];
+    if (!field.present) return;
+    if (field.kind != Field::Kind::kFlag || field.integer != 0) ++statistics.images;
+    if (field.kind == Field::Kind::kText || field.kind == Field::Kind::kChoice) count(statistics.words, field.text);
+  }
+  void begin_section(std::string_view, std::string_view, bool, bool) {}
+  void end_section() {}
+  void begin_list(std::string_view, std::string_view, std::size_t) { ++lists_; }
+  void end_list() { --lists_; }
+  void begin_element() {}
+  void end_element() {}
+
+ private:
+  static void count(std::map<std::string, std::uint64_t>& words, std::string_view word) {
+    if (word.empty()) return;
+    const std::string key(word);
+    const auto known = words.find(key);
+    if (known != words.end()) {
+      ++known->second;
+    } else if (words.size() < kMaxWords) {
+      words.emplace(key, 1);
+    }
+  }
+
+  std::vector<FieldStatistics>& fields_;
+  std::size_t place_ = 0;
+  int lists_ = 0;
+};
+
 }  // namespace
 
 Result<void> StatisticsSink::on_image(const ImageReport& report) {
@@ -20,12 +61,7 @@ Result<void> StatisticsSink::on_image(const ImageReport& report) {
   table_.add(report.record);
   run_.found += report.frame.objects.value.first().object.found ? 1 : 0;
   run_.last_pose = report.frame.pose.value;
-  const stages::Decision& decision = report.frame.decision.value;
-  if (run_.task.empty() || run_.task.back().state != decision.state) {
-    run_.task.push_back(
-        {decision.state, decision.reason, report.record.image_sequence, seconds_of(report.record.stamp)});
-  }
-  count_lamp(report);
+  keep_events(report);
   count_outputs(report);
   return {};
 }
@@ -33,40 +69,24 @@ Result<void> StatisticsSink::on_image(const ImageReport& report) {
 void StatisticsSink::count_outputs(const ImageReport& report) {
   std::size_t place = 0;
   stages::for_each_output(report.frame, [&](std::string_view name, std::string_view, const auto& output) {
-    if (place == run_.outputs.size()) run_.outputs.push_back({name, 0, ""});
+    if (place == run_.outputs.size()) run_.outputs.push_back({name, 0, "", {}});
     OutputStatistics& statistics = run_.outputs[place++];
     if (!output.fresh()) return;
     ++statistics.updates;
     statistics.last.clear();
     append_json(statistics.last, output.value);
+    FieldCounter counter(statistics.fields);
+    read_fields(output.value, counter);
   });
 }
 
-void StatisticsSink::count_lamp(const ImageReport& report) {
-  const stages::LampReport& lamp = report.frame.lamp.value;
-  if (!lamp.has_board) return;
-  count_check(report, illumination::CheckedLamp::kProbeLamp, lamp.probes_check);
-  count_check(report, illumination::CheckedLamp::kRoomLamp, lamp.lamp_proof);
-  if (report.frame.lamp.fresh()) {
-    ++run_.lamp.looks;
-    if (const auto reason = reason_of(lamp); !reason.empty()) ++run_.lamp.unanswered[reason];
-  }
-  run_.lamp.masked += report.frame.shade.value.status == stages::ShadeStatus::kMasked ? 1 : 0;
-  if (!lamp.known) return;
-  ++run_.lamp.known;
-  run_.lamp.last = lamp.lamp;
-}
-
-void StatisticsSink::count_check(const ImageReport& report, illumination::CheckedLamp lamp,
-                                 const illumination::CheckReport& check) {
-  using illumination::CheckState;
-  auto& before = checks_[static_cast<std::size_t>(lamp)];
-  if (check.state == before) return;
-  before = check.state;
-  if (check.state != CheckState::kPassed && check.state != CheckState::kFailed && check.state != CheckState::kFault) {
-    return;
-  }
-  run_.checks.push_back({lamp, check, report.record.image_sequence, seconds_of(report.record.stamp)});
+void StatisticsSink::keep_events(const ImageReport& report) {
+  stages::for_each_event(report.frame, [&](const stages::Event& event) {
+    run_.events.push_back({event, report.record.image_sequence, seconds_of(report.record.stamp)});
+    if (run_.events.size() <= RunStatistics::kMaxEvents) return;
+    run_.events.pop_front();
+    ++run_.earlier_events;
+  });
 }
 
 Result<void> StatisticsSink::on_missing_image(const runtime::FrameRecord& record) {

@@ -1,47 +1,41 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
-#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "pipeline/runtime/stage_table.h"
+#include "platform/description.h"
 #include "src/sinks/sink.h"
 
 namespace cgsr::sinks {
 
-/// A change of the task's state.
-struct TaskStep {
-  std::string_view state;
-  std::string_view reason;
+/// An event and when it happened.
+struct EventRecord {
+  stages::Event event;
   std::uint64_t image = 0;
   double at_s = 0.0;
 };
 
-/// A check by switching that ended.
-struct CheckEnd {
-  illumination::CheckedLamp lamp = illumination::CheckedLamp::kProbeLamp;
-  illumination::CheckReport report;
-  std::uint64_t image = 0;
-  double at_s = 0.0;
-};
-
-/// What the stages of chapter 5 came to in a run.
-struct LampStatistics {
-  std::uint64_t looks = 0;                               ///< images whose probes were examined.
-  std::map<std::string_view, std::uint64_t> unanswered;  ///< of these, by why they said nothing of a lamp.
-  std::uint64_t known = 0;                               ///< images in which a lamp was known.
-  std::uint64_t masked = 0;                              ///< images with masks.
-  std::optional<illumination::KnownLamp> last;           ///< the last lamp that was known.
+/// How often a field of an output was what, over the images in which its stage gave a new one.
+struct FieldStatistics {
+  std::string name;
+  Field::Kind kind = Field::Kind::kNumber;
+  bool optional = false;
+  std::uint64_t images = 0;                    ///< in which it was there; of a flag: in which it was set.
+  std::map<std::string, std::uint64_t> words;  ///< of a text or a choice: images by what it said.
 };
 
 /// What a described output came to.
 struct OutputStatistics {
   std::string_view name;
-  std::uint64_t updates = 0;  ///< images in which its stage gave a new one.
-  std::string last;           ///< the last one, as JSON.
+  std::uint64_t updates = 0;            ///< images in which its stage gave a new one.
+  std::string last;                     ///< the last one, as JSON.
+  std::vector<FieldStatistics> fields;  ///< as it describes them, without those of lists.
 };
 
 /// What a run came to.
@@ -55,11 +49,12 @@ struct RunStatistics {
   double fastest_radps = 0.0;
   MotionStatus last_motion;
   stages::PoseEstimate last_pose;
-  LampStatistics lamp;
-  std::vector<TaskStep> task;             ///< in order.
+  std::deque<EventRecord> events;         ///< in order, the last kMaxEvents.
+  std::uint64_t earlier_events = 0;       ///< that are not among them.
   std::vector<SwitchRecord> switchings;   ///< of lamps, in order.
-  std::vector<CheckEnd> checks;           ///< by switching, in order.
   std::vector<OutputStatistics> outputs;  ///< in the order of for_each_output.
+
+  static constexpr std::size_t kMaxEvents = 2000;
 };
 
 /// Counts what happened in a run, and what each stage took.
@@ -78,12 +73,10 @@ class StatisticsSink final : public Sink {
 
  private:
   void count_outputs(const ImageReport& report);
-  void count_lamp(const ImageReport& report);
-  void count_check(const ImageReport& report, illumination::CheckedLamp lamp, const illumination::CheckReport& check);
+  void keep_events(const ImageReport& report);
 
   runtime::StageTable table_;
   RunStatistics run_;
-  std::array<illumination::CheckState, 2> checks_{};  // by CheckedLamp
 };
 
 }  // namespace cgsr::sinks

@@ -1,9 +1,10 @@
 #include "src/sinks/statistics_summary.h"
 
-#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "src/sinks/event_text.h"
 
 namespace cgsr::sinks {
 namespace {
@@ -42,36 +43,30 @@ void add_motion(const RunStatistics& run, Summary& summary) {
       to_string(last.cause));
 }
 
-void add_task(const RunStatistics& run, Summary& summary) {
-  if (run.task.empty()) return;
-  Json json = Json::array();
-  summary.text += "task, state by state:\n";
-  for (const TaskStep& step : run.task) {
-    json.push_back({{"state", step.state}, {"reason", step.reason}, {"image", step.image}, {"at_s", step.at_s}});
-    summary.text += fmt::format("{:>8} {:>7.1f} s  {:<32} {}\n", step.image, step.at_s, step.state, step.reason);
+Json event_json(const EventRecord& record) {
+  Json json{{"image", record.image},
+            {"at_s", record.at_s},
+            {"source", record.event.source},
+            {"state", record.event.state},
+            {"reason", record.event.reason}};
+  for (std::size_t i = 0; i < record.event.number_count; ++i) {
+    json["numbers"][std::string(record.event.numbers[i].name)] = record.event.numbers[i].value;
   }
-  summary.text += "\n";
-  summary.json["task"] = std::move(json);
+  return json;
 }
 
-void add_lamp(const LampStatistics& lamp, Summary& summary) {
-  if (lamp.looks == 0) return;
-  Json json{{"looks", lamp.looks}, {"known", lamp.known}, {"masked", lamp.masked}, {"unanswered", Json::object()}};
-  summary.text += fmt::format("lamp: probes examined in {} images", lamp.looks);
-  for (const auto& [reason, images] : lamp.unanswered) {
-    json["unanswered"][std::string(reason)] = images;
-    summary.text += fmt::format(", {} {}", images, reason);
-  }
-  summary.text += fmt::format("; known in {} images, masks in {}\n", lamp.known, lamp.masked);
-  if (lamp.last) {
-    const auto& p = lamp.last->p_WL;
-    const double sigma_m = std::sqrt(lamp.last->covariance.trace());
-    json["lamp"] = {p.x(), p.y(), p.z()};
-    json["lamp_sigma_m"] = sigma_m;
-    summary.text += fmt::format("last at ({:.3f}, {:.3f}, {:.3f}) m, sigma {:.3f} m\n", p.x(), p.y(), p.z(), sigma_m);
+void add_events(const RunStatistics& run, Summary& summary) {
+  Json json = Json::array();
+  for (const EventRecord& record : run.events) json.push_back(event_json(record));
+  summary.json["events"] = std::move(json);
+  summary.json["earlier_events"] = run.earlier_events;
+  if (run.events.empty()) return;
+  summary.text += "events:\n";
+  if (run.earlier_events > 0) summary.text += fmt::format("   ({} before)\n", run.earlier_events);
+  for (const EventRecord& record : run.events) {
+    summary.text += fmt::format("{:>8} {:>7.1f} s  {}\n", record.image, record.at_s, text_of(record.event));
   }
   summary.text += "\n";
-  summary.json["light"] = std::move(json);
 }
 
 Json switching_json(const SwitchRecord& record) {
@@ -85,38 +80,49 @@ Json switching_json(const SwitchRecord& record) {
 }
 
 void add_switches(const RunStatistics& run, Summary& summary) {
-  if (run.switchings.empty() && run.checks.empty()) return;
-  Json json{{"switchings", Json::array()}, {"checks", Json::array()}};
+  if (run.switchings.empty()) return;
+  Json json = Json::array();
   summary.text += "lamps switched:\n";
   for (const SwitchRecord& record : run.switchings) {
     const stages::SwitchRequest& request = record.answer.request;
-    json["switchings"].push_back(switching_json(record));
+    json.push_back(switching_json(record));
     summary.text += fmt::format("{:>9.3f} s  {} {}: {}\n", seconds_of(request.asked_at), to_string(request.line),
                                 request.on ? "on" : "off",
                                 record.answer.done ? fmt::format("done at {:.3f} s", seconds_of(record.answer.at))
                                                    : std::string(record.problem.data()));
   }
-  for (const CheckEnd& check : run.checks) {
-    json["checks"].push_back({{"lamp", to_string(check.lamp)},
-                              {"outcome", to_string(check.report.state)},
-                              {"verdict", to_string(check.report.verdict)},
-                              {"pairs", check.report.tries},
-                              {"image", check.image},
-                              {"at_s", check.at_s}});
-    summary.text += fmt::format("{:>9.3f} s  check by the {}: {} ({})\n", check.at_s, to_string(check.lamp),
-                                to_string(check.report.state), to_string(check.report.verdict));
-  }
   summary.text += "\n";
-  summary.json["switches"] = std::move(json);
+  summary.json["switchings"] = std::move(json);
 }
 
-Json outputs_json(const RunStatistics& run) {
+/// Only what is not the same in every image: texts and choices by what they said, flags, and numbers that may be missing.
+Json images_json(const std::vector<FieldStatistics>& fields) {
+  Json json = Json::object();
+  for (const FieldStatistics& field : fields) {
+    if (!field.words.empty()) {
+      json[field.name] = field.words;
+    } else if (field.kind == Field::Kind::kFlag || field.optional) {
+      json[field.name] = field.images;
+    }
+  }
+  return json;
+}
+
+void add_outputs(const RunStatistics& run, Summary& summary) {
   Json outputs = Json::object();
   for (const OutputStatistics& output : run.outputs) {
     outputs[std::string(output.name)] = {{"updates", output.updates},
+                                         {"images", images_json(output.fields)},
                                          {"last", output.last.empty() ? Json() : Json::parse(output.last)}};
+    for (const FieldStatistics& field : output.fields) {
+      if (field.words.empty()) continue;
+      summary.text += fmt::format("{}, {} by images:", output.name, field.name);
+      for (const auto& [word, images] : field.words) summary.text += fmt::format(" {} {};", word, images);
+      summary.text += "\n";
+    }
   }
-  return outputs;
+  summary.text += "\n";
+  summary.json["outputs"] = std::move(outputs);
 }
 
 }  // namespace
@@ -129,10 +135,9 @@ void add_run_statistics(const RunStatistics& run, const runtime::StageTable& tab
   summary.text +=
       fmt::format("{} images ({} frames without one), object found in {}\n", images, run.without_image, run.found);
   add_motion(run, summary);
-  add_task(run, summary);
-  add_lamp(run.lamp, summary);
+  add_events(run, summary);
   add_switches(run, summary);
-  summary.json["outputs"] = outputs_json(run);
+  add_outputs(run, summary);
   summary.json["stages"] = stages_json(table);
   summary.text += runtime::to_text(table);
 }

@@ -4,6 +4,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "src/sinks/event_text.h"
+
 namespace cgsr::sinks {
 namespace {
 
@@ -34,6 +36,7 @@ Result<void> TraceSink::on_image(const ImageReport& report) {
   if (!frame) return tl::unexpected(frame.error());
   if (auto added = add_capture(*frame); !added) return added;
   if (auto added = add_report(*frame, report.taken_at); !added) return added;
+  if (auto added = add_events(*frame, report.frame); !added) return added;
   sent_.push_back(*frame);
   return add_goals();
 }
@@ -52,6 +55,15 @@ Result<void> TraceSink::add_capture(const DrawnFrame& frame) {
       file_.slice(kCapture, "image", at, Duration::zero(), {{"image", static_cast<std::int64_t>(frame.image)}});
   if (added) added = file_.flow_start(kCapture, "image", frame.image, at);
   if (added) added = file_.flow_end(kVision, "image", frame.image, std::max(frame.begin, at));
+  return added;
+}
+
+// At the end of the frame: the record does not say when within it.
+Result<void> TraceSink::add_events(const DrawnFrame& drawn, const stages::FrameResult& frame) {
+  Result<void> added;
+  stages::for_each_event(frame, [&](const stages::Event& event) {
+    if (added) added = file_.instant(kVision, text_of(event), drawn.end, {{"reason", event.reason}});
+  });
   return added;
 }
 

@@ -46,6 +46,7 @@ class TraceSink final : public Sink {
   Result<void> add_stage(const runtime::StageRecord& stage, const std::string& name, MonoTime begin, Duration shown);
   Result<void> add_capture(const DrawnFrame& frame);
   Result<void> add_report(const DrawnFrame& frame, MonoTime taken_at);
+  Result<void> add_events(const DrawnFrame& drawn, const stages::FrameResult& frame);
   Result<void> add_goals();
 
   TraceFile file_;

@@ -65,15 +65,28 @@ class LampRun : public ::testing::Test {
     return outcome.exit_code == 0 ? nlohmann::json::parse(read_text(scratch_ / "run.json")) : nlohmann::json{};
   }
 
+  static std::vector<nlohmann::json> events_of(const nlohmann::json& summary, const std::string& source) {
+    std::vector<nlohmann::json> events;
+    for (const auto& event : summary.at("events")) {
+      if (event["source"] == source) events.push_back(event);
+    }
+    return events;
+  }
+  static nlohmann::json last_event(const nlohmann::json& summary, const std::string& source) {
+    const auto events = events_of(summary, source);
+    return events.empty() ? nlohmann::json{{"state", "no event"}, {"reason", "no event"}} : events.back();
+  }
+  static int images_by_probes(const nlohmann::json& summary, const std::string& outcome) {
+    return summary["outputs"]["lamp"]["images"]["probes"].value(outcome, 0);
+  }
+
   /// It tracks in ambient light, and no image had a mask.
   static void expect_no_mask(const nlohmann::json& summary, const std::string& reason) {
-    ASSERT_FALSE(summary["task"].empty());
-    EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only") << summary["task"];
-    EXPECT_EQ(summary["task"].back()["reason"], reason);
-    if (summary.contains("light")) {
-      EXPECT_EQ(summary["light"]["known"], 0);
-      EXPECT_EQ(summary["light"]["masked"], 0);
-    }
+    ASSERT_FALSE(events_of(summary, "task").empty());
+    EXPECT_EQ(last_event(summary, "task")["state"], "tracking, ambient light only") << summary["events"];
+    EXPECT_EQ(last_event(summary, "task")["reason"], reason);
+    EXPECT_EQ(summary["outputs"]["lamp"]["images"]["lamp_x_m"], 0) << "a lamp is known";
+    EXPECT_FALSE(summary["outputs"]["shade"]["images"]["shade"].contains("masked"));
   }
 
   ScratchFolder scratch_;
@@ -87,24 +100,20 @@ using LampRunFault = LampRun;
 TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
   change({{"switches.probe_lamp_line", quoted("probe lamp")}, {"switches.room_lamp_line", quoted("living lamp")}});
   const auto summary = run("4.5");
-  const auto& checks = summary["switches"]["checks"];
-  ASSERT_EQ(checks.size(), 2U) << summary["switches"];
-  EXPECT_EQ(checks[0]["lamp"], "probe lamp");
-  EXPECT_EQ(checks[0]["outcome"], "passed");
-  EXPECT_EQ(checks[1]["lamp"], "room lamp");
-  EXPECT_EQ(checks[1]["outcome"], "passed");
-  const auto& switchings = summary["switches"]["switchings"];
+  EXPECT_EQ(last_event(summary, "check by the probe lamp")["state"], "passed") << summary["events"];
+  EXPECT_EQ(last_event(summary, "check by the room lamp")["state"], "passed") << summary["events"];
+  const auto& switchings = summary["switchings"];
   ASSERT_EQ(switchings.size(), 4U);
   for (const auto& one : switchings) {
     EXPECT_EQ(one["done"], true);
     EXPECT_GE(one["answered_s"], one["requested_s"]);
   }
   EXPECT_EQ(switchings[3]["on"], false) << "as it was before";
-  EXPECT_GT(summary["light"]["unanswered"]["a lamp is switched"], 0);
+  EXPECT_GT(images_by_probes(summary, "a lamp is switched"), 0);
   bool backed_off = false;
-  for (const auto& step : summary["task"])
+  for (const auto& step : events_of(summary, "task"))
     backed_off = backed_off || step["reason"] == "the shadows are the room lamp's";
-  EXPECT_TRUE(backed_off) << summary["task"];
+  EXPECT_TRUE(backed_off) << summary["events"];
   EXPECT_EQ(summary["frames"]["late"], 0);
 }
 
@@ -112,9 +121,9 @@ TEST_F(LampRun, ALampThatAnswersChecksTheProbesAndProvesTheShadows) {
 TEST_F(LampRun, LocatesTheLampBacksOffAndTracksWithTheMask) {
   change({{"task.lamp.back_off_m", "0.4"}});
   const auto summary = run("9");
-  ASSERT_FALSE(summary["task"].empty());
-  EXPECT_EQ(summary["task"].back()["state"], "tracking") << summary["task"];
-  EXPECT_GT(summary["light"]["masked"], 10) << summary["light"];
+  ASSERT_FALSE(events_of(summary, "task").empty());
+  EXPECT_EQ(last_event(summary, "task")["state"], "tracking") << summary["events"];
+  EXPECT_GT(summary["outputs"]["shade"]["images"]["shade"]["masked"], 10) << summary["outputs"];
   EXPECT_LT(summary["light"]["last_cm"], 20.0) << summary["light"];
 }
 
@@ -122,33 +131,32 @@ TEST_F(LampRunFault, ALineThatDoesNotAnswerIsNamedAndItTracksWithoutAMask) {
   change({{"switches.probe_lamp_line", quoted("probe lamp")}});
   scenario_ += "line_event = [{ what = \"no_answer\", line = \"probe lamp\" }]\n";
   const auto summary = run("1.8");
-  EXPECT_EQ(summary["switches"]["switchings"][0]["done"], false);
-  EXPECT_THAT(summary["switches"]["switchings"][0]["problem"].get<std::string>(), HasSubstr("'probe lamp'"));
-  EXPECT_EQ(summary["switches"]["checks"][0]["outcome"], "fault");
-  EXPECT_EQ(summary["switches"]["checks"][0]["verdict"], "the switch does not answer");
+  EXPECT_EQ(summary["switchings"][0]["done"], false);
+  EXPECT_THAT(summary["switchings"][0]["problem"].get<std::string>(), HasSubstr("'probe lamp'"));
+  EXPECT_EQ(last_event(summary, "check by the probe lamp")["state"], "fault");
+  EXPECT_EQ(last_event(summary, "check by the probe lamp")["reason"], "the switch does not answer");
   EXPECT_THAT(errors_, HasSubstr("the line does not answer"));
-  EXPECT_EQ(summary["task"].back()["reason"], "a lamp does not switch");
-  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
+  EXPECT_EQ(last_event(summary, "task")["reason"], "a lamp does not switch");
+  EXPECT_EQ(last_event(summary, "task")["state"], "tracking, ambient light only");
 }
 
 TEST_F(LampRunFault, ALineThatAnswersAndSwitchesNothingIsNamed) {
   change({{"switches.probe_lamp_line", quoted("probe lamp")}});
   scenario_ += "line_event = [{ what = \"stuck\", line = \"probe lamp\" }]\n";
   const auto summary = run("3.0");
-  ASSERT_FALSE(summary["switches"]["checks"].empty()) << summary["task"];
-  EXPECT_EQ(summary["switches"]["checks"][0]["verdict"], "the lamp did not switch");
-  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
+  EXPECT_EQ(last_event(summary, "check by the probe lamp")["reason"], "the lamp did not switch");
+  EXPECT_EQ(last_event(summary, "task")["state"], "tracking, ambient light only");
 }
 
 // What the line switches is another lamp than the one whose shadows the probes show.
 TEST_F(LampRunFault, AShadowThatStaysIsNotTheRoomLampsAndItTracksWithoutAMask) {
   change({{"switches.room_lamp_line", quoted("reading lamp")}});
   const auto summary = run("3.2");
-  ASSERT_EQ(summary["switches"]["checks"].size(), 1U) << summary["task"];
-  EXPECT_EQ(summary["switches"]["checks"][0]["outcome"], "failed") << summary["switches"];
-  EXPECT_EQ(summary["task"].back()["reason"], "the shadows are not the room lamp's");
-  EXPECT_EQ(summary["task"].back()["state"], "tracking, ambient light only");
-  EXPECT_GT(summary["light"]["unanswered"]["not the room lamp's shadow"], 0);
+  EXPECT_EQ(events_of(summary, "check by the room lamp").size(), 1U) << summary["events"];
+  EXPECT_EQ(last_event(summary, "check by the room lamp")["state"], "failed") << summary["events"];
+  EXPECT_EQ(last_event(summary, "task")["reason"], "the shadows are not the room lamp's");
+  EXPECT_EQ(last_event(summary, "task")["state"], "tracking, ambient light only");
+  EXPECT_GT(images_by_probes(summary, "not the room lamp's shadow"), 0);
 }
 
 TEST_F(LampRunFault, ALineThatTheRobotDoesNotHaveStopsTheStart) {
@@ -164,7 +172,7 @@ TEST_F(LampRunFault, ProbesThatAreNotInView) {
   replace(scenario_, "robot = \"lamp robot\"", "robot = \"robot\"");
   const auto summary = run("0.8");
   expect_no_mask(summary, "the probe board cannot be read");
-  EXPECT_GT(summary["light"]["unanswered"]["board and probes not found"], 0);
+  EXPECT_GT(images_by_probes(summary, "board and probes not found"), 0);
 }
 
 TEST_F(LampRunFault, AConeThatIsMissing) {
@@ -174,7 +182,7 @@ TEST_F(LampRunFault, AConeThatIsMissing) {
   replace(scenario_, CGSR_SOURCE_DIR "/config/worlds/home.toml", scratch_ / "world.toml");
   const auto summary = run("0.8");
   expect_no_mask(summary, "the probe board cannot be read");
-  EXPECT_GT(summary["light"]["unanswered"]["a cone is missing"], 0);
+  EXPECT_GT(images_by_probes(summary, "a cone is missing"), 0);
 }
 
 TEST_F(LampRunFault, ABoardThatIsBrighterThanTheCameraHolds) {
@@ -182,7 +190,7 @@ TEST_F(LampRunFault, ABoardThatIsBrighterThanTheCameraHolds) {
           "radius_m = 0.05, script = [{ at_s = 0.0, factor = [40.0, 40.0, 40.0] }] }]");
   const auto summary = run("0.8");
   expect_no_mask(summary, "the probe board cannot be read");
-  EXPECT_GT(summary["light"]["unanswered"]["board saturated"], 0) << summary["light"];
+  EXPECT_GT(images_by_probes(summary, "board saturated"), 0);
 }
 
 TEST_F(LampRunFault, ACalibrationOfAnotherCamera) {

@@ -117,6 +117,16 @@ TEST_F(ShadeEdges, MasksNeedThePoseOfThisImage) {
   EXPECT_EQ(stage_.update(budget_, aged(known_pose(), kNow), lamp)->status, ShadeStatus::kMasked);
 }
 
+TEST_F(ShadeEdges, AChangeOfTheStatusIsAnEventOnce) {
+  const auto pose = aged(known_pose(), kNow);
+  const auto none = stage_.update(budget_, pose, {});
+  ASSERT_EQ(none->events.size(), 1U);
+  EXPECT_EQ(none->events.begin()->source, "shadow masks");
+  EXPECT_EQ(none->events.begin()->state, "no lamp known");
+  EXPECT_EQ(stage_.update(budget_, pose, {})->events.size(), 0U) << "as it was";
+  EXPECT_EQ(stage_.update(budget_, {}, {})->events.begin()->state, to_string(ShadeStatus::kPoseUnknown));
+}
+
 TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
   prepare();
   const auto pose = aged(known_pose(), kNow);

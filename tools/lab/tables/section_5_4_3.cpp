@@ -195,9 +195,10 @@ void add_score(const std::string& row, const BallScore& score, std::optional<dou
 /// What the robot's own statistics say: when each step of its task began, and how far off its lamp was.
 void add_run(const boot::Outputs& outputs, int images, Report& report) {
   report.rows.push_back({"the run", "images", "", 1821.0, static_cast<double>(images), std::nullopt, 1});
-  for (const sinks::TaskStep& step : outputs.statistics->run().task) {
-    report.rows.push_back(
-        {fmt::format("{}: {}", step.state, step.reason), "begins at", "s", std::nullopt, step.at_s, std::nullopt, 1});
+  for (const sinks::EventRecord& record : outputs.statistics->run().events) {
+    if (record.event.source != "task") continue;
+    report.rows.push_back({fmt::format("{}: {}", record.event.state, record.event.reason), "begins at", "s",
+                           std::nullopt, record.at_s, std::nullopt, 1});
   }
   if (outputs.truth == nullptr || outputs.truth->lamp().compared == 0) return;
   const sinks::LampTruthStatistics& light = outputs.truth->lamp();

@@ -18,6 +18,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/render/shadow_volumes.h"
 #include "pipeline/stages/shade_stage.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
@@ -37,8 +38,10 @@ constexpr std::array kFactors{0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75};
 constexpr double kTheirsWith = 0.742;
 constexpr double kTheirsWithout = 0.437;
 
-enum Contender : std::size_t { kWithMask, kWithout, kBrightOnly, kContenders };
-constexpr std::array<std::string_view, kContenders> kNames{"with the mask", "without a mask", "bright colours only"};
+enum Contender : std::size_t { kWithMask, kWithout, kBrightOnly, kOneCell, kContenders };
+constexpr std::array<std::string_view, kContenders> kNames{"with the mask", "without a mask", "bright colours only",
+                                                           "with a mask widened by one cell"};
+constexpr int kWiden_cells = 1;  // instead of the stated errors
 
 /// What several trackers do in one take.
 struct Take {
@@ -88,6 +91,12 @@ stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
   return given_masks({masks.width, masks.height, nothing, nothing});
 }
 
+/// Masks of the true map, lamp and pose, widened by a cell: of a robot that knows no errors.
+stages::ShadowMasks widened_masks(const BallFilm& film, const config::Robot& robot) {
+  render::ShadowVolumes volumes(film.map(), robot.shade.masks);
+  return given_masks(volumes.look(film.X_WC(), film.camera(), film.p_WL(), kWiden_cells));
+}
+
 /// One tracker with the masks that it is given.
 struct Entry {
   BallTracker tracker;
@@ -107,7 +116,8 @@ Result<std::vector<Entry>> entries_of(const BallFilm& film, const BallFilm::Shot
     entries.push_back({std::move(*tracker), given});
     return {};
   };
-  for (const stages::ShadowMasks& given : {masks, stages::ShadowMasks{}, all_lit(*masks.masks)}) {
+  for (const stages::ShadowMasks& given :
+       {masks, stages::ShadowMasks{}, all_lit(*masks.masks), widened_masks(film, robot)}) {
     if (auto added = add(robot.integrated, given); !added) return tl::unexpected(added.error());
   }
   for (const double factor : kFactors) {
