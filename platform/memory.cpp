@@ -49,7 +49,7 @@ struct Mapping {
   std::string permissions;
   std::string file;       ///< empty: anonymous; in brackets: the kernel's name for it.
   std::string data_of;    ///< of an anonymous one that begins where a file's part ends: that file.
-  bool is_clean = false;  ///< all of it can be read from the file again.
+  bool is_clean = false;  ///< private, and all of it can be read from the file again.
 
   [[nodiscard]] bool is_file() const { return !file.empty() && file.front() == '/'; }
 };
@@ -71,7 +71,10 @@ std::vector<Mapping> mappings() {
       }
       all.push_back(std::move(mapping));
     } else if (!all.empty() && std::sscanf(line.c_str(), "Private_Dirty: %lu kB", &dirty_kib) == 1) {
-      all.back().is_clean = all.back().is_file() && dirty_kib == 0;
+      // What is shared may be a device's, a camera's buffer for one: its pages were inserted when it was mapped, and the
+      // driver cannot bring one back.
+      const bool is_private = all.back().permissions.back() == 'p';
+      all.back().is_clean = is_private && all.back().is_file() && dirty_kib == 0;
     }
   }
   return all;
