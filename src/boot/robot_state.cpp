@@ -2,10 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
-#include <fmt/format.h>
+#include "src/boot/device_wait.h"
+#include "src/boot/first_image.h"
 
 namespace cgsr::boot {
+namespace {
+
+constexpr int kTriesInLockStep = 30;
+constexpr Duration kPatience = seconds(5.0);
+constexpr Duration kPatienceOfOneTry = seconds(1.0);  // of a service: the watchdog is pinged between them
+
+}  // namespace
 
 Devices::~Devices() {
   if (base) base->stop();
@@ -14,10 +23,22 @@ Devices::~Devices() {
 }
 
 Result<ImageLease> RobotState::first_image() {
-  auto image = devices.camera->next_image(setup.live() ? clocks.real.now() + seconds(5.0) : devices.next_due);
-  if (!image) return fail(fmt::format("no first image: {}", devices.camera->last_problem()));
-  devices.next_due += devices.mode.frame_period;
-  return std::move(*image);
+  hal::Camera& camera = *devices.camera;
+  if (!setup.live()) {
+    return first_good_image(camera, [this, tries = kTriesInLockStep]() mutable -> std::optional<MonoTime> {
+      if (tries-- == 0) return std::nullopt;
+      return std::exchange(devices.next_due, devices.next_due + devices.mode.frame_period);
+    });
+  }
+  const auto wait_for_image = [&](Duration patience) {
+    const MonoTime end = clocks.real.now() + patience;
+    return first_good_image(camera, [&]() -> std::optional<MonoTime> {
+      return clocks.real.now() < end ? std::optional(end) : std::nullopt;
+    });
+  };
+  StopRequest* const waits = setup.options.wait_for_devices;
+  if (waits == nullptr || !setup.config.real_camera()) return wait_for_image(kPatience);
+  return open_when_there("first image", clocks.real, *waits, [&] { return wait_for_image(kPatienceOfOneTry); });
 }
 
 tasks::VisionSurroundings RobotState::surroundings() const {

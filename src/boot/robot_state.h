@@ -109,7 +109,8 @@ struct RobotState {
   Vision vision;
   Outputs outputs;
 
-  /// The next image before the loops run: what is learned from, or where a marker is looked for.
+  /// The next image before the loops run: what is learned from, or where a marker is looked for. Damaged images are passed
+  /// over, for 5 s or, in lock-step, 30 images; a service waits until a stop is requested.
   Result<ImageLease> first_image();
   [[nodiscard]] tasks::SwitchLines lines() const {
     return {setup.config.switches.arming_line, setup.config.switches.lamps()};
