@@ -11,8 +11,9 @@
 namespace cgsr::hal::rmp {
 namespace {
 
-constexpr Duration kCommandGap = seconds(0.010);   // the base wants them no faster
-constexpr Duration kRepeatAfter = seconds(0.100);  // and no slower than every 0.3 s
+constexpr Duration kCommandGap = seconds(0.010);    // the base wants them no faster, in the mean
+constexpr Duration kCycleJitter = seconds(0.0005);  // a control cycle that begins so much early has its turn
+constexpr Duration kRepeatAfter = seconds(0.100);   // and no slower than every 0.3 s
 constexpr Duration kModeAskedAgain = seconds(0.500);
 constexpr Duration kIntruderStays =
     seconds(1.000);  // one message of another commander, or of a base that is off, counts so long
@@ -179,7 +180,7 @@ bool RmpDrive::mode_due(MonoTime now) const {
 }
 
 void RmpDrive::speak(MonoTime now) {
-  if (speech_.tried_at && now - *speech_.tried_at < kCommandGap) return;  // has to wait for its turn
+  if (speech_.turn && now + kCycleJitter < *speech_.turn) return;  // has to wait for its turn
   Command command = motion_due(now);
   if (mode_due(now)) {
     command = {.configuration = static_cast<std::uint16_t>(Configuration::kOperationalMode),
@@ -189,6 +190,7 @@ void RmpDrive::speak(MonoTime now) {
   CanFrame frame = encode(command);
   frame.stamp = now;
   speech_.tried_at = now;
+  speech_.turn = std::max(now, speech_.turn.value_or(now)) + kCommandGap;
   const auto sent = bus_->send(frame);
   speech_.refused = !sent;
   if (!sent) {

@@ -22,8 +22,8 @@ struct RmpCounters {
 
 /// A Segway RMP 50/100/200/400 over any CAN bus.
 ///
-/// Sends the newest command at most every 10 ms; a newer one waits for its turn. Repeats it while command() is silent
-/// for up to hold_s, then zero: the base itself would go on for 400 ms. Listens whenever command() or odometry() is
+/// Sends the newest command at most every 10 ms in the mean, and never sooner than 9.5 ms after another, so that control
+/// cycles that jitter each send theirs; a newer one waits for its turn. Repeats it while command() is silent for up to hold_s, then zero: the base itself would go on for 400 ms. Listens whenever command() or odometry() is
 /// called, so one of them must be, every 30 ms or so.
 ///
 /// Until the first command() it says nothing at all, not even in stop(): a dry run leaves the base to others.
@@ -67,6 +67,7 @@ class RmpDrive final : public Drive, public FaultLatch {
     Twist wanted;
     std::optional<MonoTime> wanted_at;
     std::optional<MonoTime> tried_at;
+    std::optional<MonoTime> turn;  // the next message may go
     std::optional<MonoTime> mode_asked_at;
     Command last;  // what the bus took last
     std::uint64_t commands = 0;

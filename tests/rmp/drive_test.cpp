@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -109,6 +110,23 @@ TEST(RmpDrive, OneCommandInTenMillisecondsHoweverOftenItIsAsked) {
   EXPECT_GE(commands.frames().size(), 99U);
   EXPECT_LE(commands.frames().size(), 101U);
   EXPECT_GE(commands.shortest_gap(), seconds(0.0095));  // on the wire, where one may wait for another
+}
+
+// A control cycle that begins some microseconds less than 10 ms after another has its turn all the same.
+TEST(RmpDrive, EveryCycleThatJittersSendsItsCommand) {
+  Rig rig;
+  (void)rig.run_until(0.2, kStand);
+  const Commands commands(rig);
+  std::mt19937 random(20261125);
+  std::uniform_int_distribution<int> jitter_us(0, 400);
+  const MonoTime begin = rig.now;
+  for (int i = 1; i <= 1000; ++i) {
+    rig.now = begin + i * seconds(0.010) + std::chrono::microseconds(jitter_us(random));
+    (void)rig.drive.odometry(rig.now);
+    (void)rig.drive.command({.forward_mps = 0.1}, rig.now);
+  }
+  EXPECT_EQ(commands.frames().size(), 1000U);
+  EXPECT_GE(commands.shortest_gap(), seconds(0.0095));
 }
 
 TEST(RmpDrive, ACommandThatHadToWaitGoesOutWithTheNextListening) {
