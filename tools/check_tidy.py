@@ -28,7 +28,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 QUICK = ("-clang-analyzer-*,-bugprone-reserved-identifier,-bugprone-stringview-nullptr,-bugprone-suspicious-string-compare,"
          "-bugprone-multiple-statement-macro,-bugprone-unused-return-value,-misc-unused-using-decls")
 RECENT_COMMITS = 30
-MOST_RECENT = 40  # files
+MOST_RECENT = 24  # files
 INCLUDE = re.compile(rb'^\s*#include\s+"([^"]+)"', re.M)
 
 
