@@ -1,5 +1,4 @@
 #!/usr/bin/env bash
-# The short run as a ctest: 77 (skipped), with the reason, where this machine can have no guest. The program, the feeder and the package are built
-# already.
+# The short run as a ctest: 77 (skipped), with the reason, where this machine can have no guest.
 cd "$(dirname "${BASH_SOURCE[0]}")/../.." || exit 1
-CGSR_HIL_BUILT=1 exec tools/hil --short
+exec tools/hil --short

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Judges a run of the virtual robot computer by what separate processes wrote down.
 
-usage: evaluate.py NAME FOLDER --job-code N [--scene FOLDER]
+usage: evaluate.py NAME FOLDER --job-code N [--scene FOLDER | --cuts N --whole N]
 
 Reads from FOLDER: bus.log (candump), marks.txt (the job), base.txt and feeder.json (the feeder), summary.json and rows.csv (the service). Writes
 FOLDER/result.json, prints a table, exits with 0 when every requirement is met. A figure that could not be obtained is a failure.
@@ -14,6 +14,7 @@ import re
 import sys
 
 ZERO_WITHIN_S = 0.2        # while the process lives: from the injection to the last command that is not zero
+DRIVES_WITHIN_S = 0.05      # of a robot that goes on: the longest time between two commands that are not zero
 SENT_BEFORE_DEATH_S = 0.02  # two control cycles: what was on its way when the process was killed
 MOVING_BEFORE_S = 0.1       # a fault that meets a robot at rest shows nothing
 BASE_WAITS_S = 0.4         # the simulated base goes on after the last command for this time
@@ -110,33 +111,57 @@ def cycles_of(all_marks):
         if len(words) != 3:
             continue
         name, kind, step = words
-        if step == "injected" or not found or found[-1][0] != name or "rearmed" in found[-1][2]:
+        if step == "injected" or step in ("not-ready", "not-armed") or not found:
             found.append((name, kind, {}))
         found[-1][2][step] = time
     return found
 
 
 def judge_fault(name, kind, steps, sent, states):
-    """What one injection came to, and whether it was as required."""
+    """What one injection came to, and whether it was as required. The kinds: tests/hil/guest/root/hil/faults."""
     if "injected" not in steps:
         return {"fault": name, "kind": kind, "problem": next(iter(steps), "nothing"), "met": False}
     begin = steps["injected"]
-    rearming = steps.get("rearming", float("inf"))
     own = [command for command in sent if command[1:] != FOREIGN]
     driving = any((v or w) and begin - MOVING_BEFORE_S <= t <= begin for t, v, w in own)
-    moving = [t for t, v, w in own if begin <= t < rearming and (v or w)]
-    after = moving[-1] - begin if moving else 0.0
-    allowed = ZERO_WITHIN_S if kind == "lives" else SENT_BEFORE_DEATH_S
-    result = {"fault": name, "kind": kind, "last_motion_s": round(after, 4), "allowed_s": allowed,
-              "rearmed": "rearmed" in steps, "problem": next((step for step in steps if step.startswith("not-")), "")}
-    if "back" in steps:
-        result["back_s"] = round(steps["back"] - steps["ended"], 2)
+    result = {"fault": name, "kind": kind, "problem": next((step for step in steps if step.startswith("not-")), "")}
+    if "ended" not in steps:
+        result["met"] = False
+        return result
+    if kind == "goes_on":
+        met = judge_going_on(result, steps, own)
+    else:
+        met = judge_stop(result, kind, steps, own)
+    back = next((t for t, v, w in own if t >= steps.get("rearming", steps["ended"]) and (v or w)), None)
+    if back is not None and kind != "goes_on":
+        result["back_s"] = round(back - steps.get("rearming", steps["ended"]), 2)
+    if "rearming" in steps and "back" in steps:
+        result["started_s"] = round(steps["back"] - steps["ended"], 2)
     if not driving:
         result["problem"] = "not in motion when it was injected"
-    result["met"] = driving and after <= allowed and result["rearmed"]
+    result["met"] = driving and met and not result["problem"] and back is not None
     if kind == "dies" and states:
-        judge_base(result, steps, after, states)
+        judge_base(result, steps, result["last_motion_s"], states)
     return result
+
+
+def judge_stop(result, kind, steps, own):
+    """The last command that is not zero, from the injection until the robot may drive again."""
+    begin = steps["injected"]
+    end = steps["ended"] if kind == "holds" else steps.get("rearming", float("inf"))
+    moving = [t for t, v, w in own if begin <= t < end and (v or w)]
+    result["last_motion_s"] = round(moving[-1] - begin if moving else 0.0, 4)
+    result["allowed_s"] = SENT_BEFORE_DEATH_S if kind == "dies" else ZERO_WITHIN_S
+    return result["last_motion_s"] <= result["allowed_s"] and (kind == "holds" or "rearmed" in steps)
+
+
+def judge_going_on(result, steps, own):
+    """The longest time without a command that is not zero while the fault lasts."""
+    times = [t for t, v, w in own if steps["injected"] - MOVING_BEFORE_S <= t <= steps["ended"] and (v or w)]
+    gaps = [b - a for a, b in zip(times, [*times[1:], steps["ended"]])]
+    result["longest_gap_s"] = round(max(gaps, default=steps["ended"] - steps["injected"]), 4)
+    result["allowed_s"] = DRIVES_WITHIN_S
+    return result["longest_gap_s"] <= DRIVES_WITHIN_S
 
 
 def judge_base(result, steps, after, states):
@@ -154,10 +179,14 @@ def judge_faults(folder, report):
     results = [judge_fault(*cycle, sent, states) for cycle in cycles_of(marks(folder))]
     for name in dict.fromkeys(result["fault"] for result in results):
         own = [result for result in results if result["fault"] == name]
-        worst = max((result.get("last_motion_s", float("inf")) for result in own), default=None)
         met = sum(result["met"] for result in own)
-        allowed = own[0].get("allowed_s", ZERO_WITHIN_S)
-        report.add(f"{name}: last motion after it", f"{worst:.3f} s", f"at most {allowed} s, {met} of {len(own)}", met == len(own))
+        key = "longest_gap_s" if own[0]["kind"] == "goes_on" else "last_motion_s"
+        worst = max((result.get(key, float("inf")) for result in own), default=None)
+        what = "longest time without motion" if own[0]["kind"] == "goes_on" else "last motion after it"
+        allowed = next((result["allowed_s"] for result in own if "allowed_s" in result), ZERO_WITHIN_S)
+        report.add(f"{name}: {what}", f"{worst:.3f} s", f"at most {allowed} s, {met} of {len(own)}", met == len(own))
+        for problem in dict.fromkeys(result["problem"] for result in own if result["problem"]):
+            report.add(f"{name}: problem", problem, "none", False)
     report.add("faults injected", len(results), "at least one", bool(results))
     return results
 
@@ -231,12 +260,17 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--job-code", type=int, default=0)
     parser.add_argument("--scene", type=pathlib.Path)
+    parser.add_argument("--cuts", type=int, help="how often the power went while a file was written")
+    parser.add_argument("--whole", type=int, help="how often the file was one of its two contents at the next boot")
     options = parser.parse_args()
     report = Report()
     report.add("exit code of the job", options.job_code, "0", options.job_code == 0)
     result = {"run": options.name}
     try:
-        if (options.folder / "marks.txt").exists():
+        if options.cuts is not None:
+            report.add("file whole at the next boot", f"{options.whole} of {options.cuts}", "all", options.whole == options.cuts)
+            result["power_cut"] = {"cuts": options.cuts, "whole": options.whole}
+        elif (options.folder / "marks.txt").exists():
             if any(words[0] == "play" for _, words in marks(options.folder)):
                 judge_timing(options.folder, options.scene, report)
             elif options.name != "devices":

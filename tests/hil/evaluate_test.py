@@ -27,8 +27,10 @@ class Judge(unittest.TestCase):
 
     @staticmethod
     def steps(name, kind):
-        return [(1.0, f"{name} {kind} injected"), (2.0, f"{name} {kind} ended"), (2.5, f"{name} {kind} back"),
-                (4.0, f"{name} {kind} rearming"), (5.0, f"{name} {kind} rearmed")]
+        steps = [(1.0, "injected"), (2.0, "ended"), (2.5, "back")]
+        if kind in ("latches", "dies"):
+            steps += [(4.0, "rearming"), (5.0, "rearmed")]
+        return [(t, f"{name} {kind} {step}") for t, step in steps]
 
     @staticmethod
     def drive_until(last, again=4.5, foreign=()):
@@ -36,21 +38,31 @@ class Judge(unittest.TestCase):
         return sorted(commands + [(t, FOREIGN) for t in foreign])
 
     def test_stopping_in_time_passes(self):
-        passed, faults = self.judge(self.drive_until(1.12), self.steps("bus_down", "lives"))
+        passed, faults = self.judge(self.drive_until(1.12), self.steps("bus_down", "latches"))
         self.assertTrue(passed)
         self.assertAlmostEqual(faults[0]["last_motion_s"], 0.12, places=3)
 
     def test_stopping_late_fails(self):
-        self.assertFalse(self.judge(self.drive_until(1.25), self.steps("bus_down", "lives"))[0])
+        self.assertFalse(self.judge(self.drive_until(1.25), self.steps("bus_down", "latches"))[0])
 
     def test_motion_before_it_is_armed_again_fails(self):
-        self.assertFalse(self.judge(self.drive_until(1.1, again=3.0), self.steps("bus_down", "lives"))[0])
+        self.assertFalse(self.judge(self.drive_until(1.1, again=3.0), self.steps("bus_down", "latches"))[0])
+
+    def test_one_that_holds_goes_on_by_itself_when_the_fault_ends(self):
+        self.assertTrue(self.judge(self.drive_until(1.1, again=2.3), self.steps("camera_frozen", "holds"))[0])
+        self.assertFalse(self.judge(self.drive_until(1.1, again=1.8), self.steps("camera_frozen", "holds"))[0], "before it ends")
+        self.assertFalse(self.judge(self.drive_until(1.1, again=9.0), self.steps("camera_frozen", "holds"))[0], "never again")
+
+    def test_one_that_goes_on_may_not_stop(self):
+        self.assertTrue(self.judge(self.drive_until(9.0), self.steps("disk_full", "goes_on"))[0])
+        self.assertFalse(self.judge(self.drive_until(1.1, again=1.3), self.steps("disk_full", "goes_on"))[0])
+        self.assertFalse(self.judge(self.drive_until(1.1, again=9.0), self.steps("disk_full", "goes_on"))[0])
 
     def test_a_dead_process_may_not_command(self):
         self.assertFalse(self.judge(self.drive_until(1.1), self.steps("killed", "dies"))[0])
 
     def test_commands_of_the_second_commander_do_not_count(self):
-        self.assertTrue(self.judge(self.drive_until(1.1, foreign=(1.5, 1.7)), self.steps("second_commander", "lives"))[0])
+        self.assertTrue(self.judge(self.drive_until(1.1, foreign=(1.5, 1.7)), self.steps("second_commander", "latches"))[0])
 
     def test_a_base_that_does_not_stand_fails(self):
         steps, commands = self.steps("killed", "dies"), self.drive_until(1.0)
@@ -60,11 +72,11 @@ class Judge(unittest.TestCase):
         self.assertTrue(self.judge(commands, steps, stops)[0])
 
     def test_a_fault_that_did_not_come_back_fails(self):
-        steps = [*self.steps("bus_down", "lives")[:2], (42.0, "bus_down lives not-back")]
+        steps = [*self.steps("bus_down", "latches")[:2], (42.0, "bus_down latches not-back")]
         self.assertFalse(self.judge(self.drive_until(1.1, again=100.0), steps)[0])
 
     def test_a_robot_at_rest_shows_nothing(self):
-        passed, faults = self.judge(self.drive_until(0.5), self.steps("bus_down", "lives"))
+        passed, faults = self.judge(self.drive_until(0.5), self.steps("bus_down", "latches"))
         self.assertFalse(passed)
         self.assertIn("not in motion", faults[0]["problem"])
 
@@ -73,7 +85,9 @@ class Judge(unittest.TestCase):
             return t + (3600.0 if 1.0 <= t < 2.0 else 0.0)
         for last, right in ((1.12, True), (1.25, False)):
             commands = [(wall(t), data) for t, data in self.drive_until(last)]
-            self.assertEqual(self.judge(commands, [(0.5, "ready"), *self.steps("clock_step", "lives")], wall=wall)[0], right)
+            self.assertEqual(self.judge(commands, [(0.5, "ready"), *self.steps("clock_step", "latches")], wall=wall)[0], right)
+        going_on = [(wall(t), data) for t, data in self.drive_until(9.0)]
+        self.assertTrue(self.judge(going_on, [(0.5, "ready"), *self.steps("clock_step", "goes_on")], wall=wall)[0])
 
     def test_nothing_injected_fails(self):
         self.assertFalse(self.judge(self.drive_until(1.1), [(0.5, "ready")])[0])

@@ -7,6 +7,7 @@ run_hil() {
   local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene=sim-home-start play_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb=1024
   case "$name" in
     package) run_package; return ;;
+    power_cut) run_power_cut $((long == 1 ? 10 : 3)); return ;;
     devices | webcam) ;;
     short) limit_s=300 ;;
     profile) ;;
@@ -15,7 +16,7 @@ run_hil() {
     lamp) scene=sim-home-lamp robot=sim-home-lamp script=timing camera=loopback ;;
     faults) limit_s=7200; [ "$long" = 0 ] || repeat=10 ;;
     kill) repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
-    *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill)" ;;
+    *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill, power_cut)" ;;
   esac
   if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$play_s"; fi
   local images="$hil/scenes/$scene/images.yuyv"
@@ -34,6 +35,25 @@ run_package() {
   mkdir -p "$root/out/hil/package"
   bash "$root/tests/hil/package_chroot.sh" "$hil/rootfs" "$(robot_package)" "$hil/package" 2>&1 | tee "$root/out/hil/package/log.txt"
   return "${PIPESTATUS[0]}"
+}
+
+# run_power_cut COUNT: the guest loses its power in the middle of writing, COUNT times; each boot checks what the one before has left.
+run_power_cut() {
+  local job="$root/out/hil/power_cut" count="$1" boot whole=0 code
+  rm -rf "$job"
+  mkdir -p "$job"
+  mke2fs -q -F -t ext4 "$hil/state.ext4" 128M
+  for ((boot = 0; boot <= count; ++boot)); do
+    prepare_job "$job/$boot" power_cut follow vivid 0 1 0
+    sed -i "1i export RANDOM_CUT=$((boot * 5 + 1)) CUT=$((boot < count))" "$job/$boot/run.sh"
+    sed -i 's/FEED=1/FEED=0/' "$job/$boot/env"
+    code=0
+    ICOUNT="${CGSR_HIL_ICOUNT:-1}" STATE="$hil/state.ext4" LIMIT_S=300 bash "$guest/boot.sh" "$hil" "$job/$boot" 2>/dev/null || code=$?
+    grep -h "power_cut:" "$job/$boot/console.txt" || true
+    ! grep -q "power_cut: whole" "$job/$boot/console.txt" || whole=$((whole + 1))
+  done
+  rm -f "$hil/state.ext4"
+  python3 "$root/tests/hil/evaluate.py" power_cut "$job" --job-code "$code" --cuts "$count" --whole "$whole"
 }
 
 prepare_job() {

@@ -5,8 +5,8 @@ RANDOM=20261125
 started || exit 3
 failures=0
 for ((round = 1; round <= ${REPEAT:-10}; ++round)); do
-  sleep "0.$((RANDOM % 900 + 100))"
-  if ((RANDOM % 2)); then fault killed dies 1; else fault hung dies 5; fi || failures=$((failures + 1))
+  FAULT_AFTER="0.$((RANDOM % 900 + 100))"
+  if ((RANDOM % 2)); then fault killed; else fault hung; fi || failures=$((failures + 1))
   say "round $round, $failures failed"
 done
 exit $failures

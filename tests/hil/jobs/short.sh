@@ -5,12 +5,10 @@ failures=0
 started || exit 3
 mark "ready"
 say "ready"
-fault camera_gone lives 1.5 || failures=$((failures + 1))
-say "camera_gone done"
-fault bus_down lives 1.5 || failures=$((failures + 1))
-say "bus_down done"
-fault killed dies 2 || failures=$((failures + 1))
-say "killed done"
+for name in ${FAULTS:-camera_gone bus_down killed}; do
+  fault "$name" || failures=$((failures + 1))
+  say "$name done"
+done
 systemctl stop cgsr
 mark "stopped"
 cp /var/lib/cgsr/*.json /run/hil/ 2>/dev/null
