@@ -3,7 +3,8 @@
 
 usage: faults_table.py RESULT… [--write]
 
-RESULT is the result.json of a run of tools/hil (faults, kill, short). Without --write the table is printed.
+RESULT is the result.json of a run of tools/hil (faults, kill, short, power_cut). Without --write the table is printed. What was not injected is
+named below it.
 """
 import json
 import pathlib
@@ -46,19 +47,33 @@ def table(results):
     return "\n".join(lines)
 
 
+def power_cut_line(runs):
+    """The power cuts of all runs, or what there is instead."""
+    cuts = [run["power_cut"] for run in runs if "power_cut" in run]
+    if not cuts:
+        return "No power cut was run (`tools/hil power_cut`)."
+    return (f"Power cut while a file is written (`tools/hil power_cut`; QEMU ends at once, what the disk did not get is lost): in {sum(cut['whole'] for cut in cuts)} of "
+            f"{sum(cut['cuts'] for cut in cuts)} the file had one of its two contents, whole, at the next boot.")
+
+
+def page(runs):
+    results = [result for run in runs for result in run.get("faults", [])]
+    counts = ", ".join(f"`tools/hil {run['run']}` {len(run['faults'])}" for run in runs if run.get("faults"))
+    missing = [words for name, words in WORDS.items() if name not in {result["fault"] for result in results}]
+    unrun = f"Not injected: {'; '.join(missing)}." if missing else "Every fault of the list was injected."
+    return f"Injections: {counts}.\n\n{table(results)}\n\n{unrun} {power_cut_line(runs)}"
+
+
 def main():
     files = [argument for argument in sys.argv[1:] if not argument.startswith("--")]
     if not files:
         sys.exit(__doc__)
-    results = [result for file in files for result in json.loads(pathlib.Path(file).read_text()).get("faults", [])]
-    text = table(results)
+    text = page([json.loads(pathlib.Path(file).read_text()) for file in files])
     if "--write" not in sys.argv:
         print(text)
         return
-    page = PAGE.read_text()
-    head, rest = page.split(BEGIN)
-    tail = rest.split(END)[1]
-    PAGE.write_text(f"{head}{BEGIN}\n{text}\n{END}{tail}")
+    head, rest = PAGE.read_text().split(BEGIN)
+    PAGE.write_text(f"{head}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}")
 
 
 if __name__ == "__main__":

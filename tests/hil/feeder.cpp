@@ -2,7 +2,7 @@
 // switch on a line of gpio-sim. Runs in the guest beside the service (docs/hil.md).
 //
 // The first image stands until the file `play` appears in the control folder; then the images follow at their rate and the switch is pressed when
-// it is due. Files of the names `silent`, `estop` and `poweroff` in that folder are faults as long as they exist. SIGTERM ends it: only then
+// it is due. Files of the names `silent`, `estop`, `poweroff` and `flagged` in that folder are faults as long as they exist. SIGTERM ends it: only then
 // it writes what it did and what it cost.
 #include <pthread.h>
 #include <sys/mman.h>
@@ -25,6 +25,7 @@
 
 #include "platform/clock.h"
 #include "tests/hil/base_feeder.h"
+#include "tests/hil/flag_button.h"
 #include "tests/hil/image_feeder.h"
 
 namespace cgsr::hil {
@@ -40,6 +41,7 @@ struct Options {
   std::string controls = "/run/hil";
   std::string arming_pull;  ///< gpio-sim's file of the line; empty: nobody presses.
   double arm_after_s = 1.5;
+  std::string camera;  ///< vivid's, whose images are flagged; empty: none.
   std::string json;
   std::string truth;
   double keep_s = 3600.0;
@@ -50,6 +52,7 @@ struct Controls {
   std::atomic<bool> silent{false};
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> powered_off{false};
+  std::atomic<bool> flagged{false};
 };
 
 /// What one thread did and what it cost.
@@ -204,6 +207,9 @@ class BaseThread {
       case 6:
         controls_.emergency_stop.store(exists(options_.controls, "estop"));
         break;
+      case 8:
+        controls_.flagged.store(exists(options_.controls, "flagged"));
+        break;
       case 9:
         controls_.powered_off.store(exists(options_.controls, "poweroff"));
         break;
@@ -225,6 +231,25 @@ class BaseThread {
   std::optional<MonoTime> plays_since_;
   bool pressed_ = false;
 };
+
+/// Flags every image of the camera while it is wanted. Both ends of vivid use a press up, so it is pressed often.
+void flag_images(const Options& options, const Controls& controls) {
+  constexpr int kPresses = 9;
+  FlagButton button(options.camera);
+  run_ahead_of_all("feed flags", 89);
+  Cost cost;
+  std::string problem;
+  cycle(kBasePeriod, cost, [&](MonoTime) {
+    for (int i = 0; i < kPresses && controls.flagged.load(); ++i) {
+      const auto pressed = button.press();
+      if (!pressed && pressed.error().message != problem) {
+        problem = pressed.error().message;
+        fmt::print(stderr, "feeder: {}\n", problem);
+      }
+      std::this_thread::sleep_for(kBasePeriod / (kPresses + 1));
+    }
+  });
+}
 
 Result<void> write_report(const Options& options, const ImageThread& images, const BaseThread& base) {
   if (auto written = base.write_truth(); !written) return written;
@@ -248,6 +273,9 @@ int feed(const Options& options) {
   std::thread image_thread([&] {
     if (has_images) images.run();
   });
+  std::thread flag_thread([&] {
+    if (!options.camera.empty()) flag_images(options, controls);
+  });
   Result<void> outcome;
   if (has_images) outcome = images.load_rest();
   if (outcome) {
@@ -257,6 +285,7 @@ int feed(const Options& options) {
   }
   base_thread.join();
   image_thread.join();
+  flag_thread.join();
   if (outcome) outcome = write_report(options, images, base);
   if (!outcome) fmt::print(stderr, "feeder: {}\n", outcome.error().message);
   return outcome ? 0 : 1;
@@ -276,6 +305,8 @@ int main(int argc, char** argv) {
   app.add_option("--controls", options.controls, "the folder of `play` and of the faults");
   app.add_option("--arming-pull", options.arming_pull, "gpio-sim's `pull` file of the arming line");
   app.add_option("--arm-after", options.arm_after_s, "seconds from `play` until the switch is pressed");
+  app.add_option("--camera", options.camera,
+                 "the camera, of vivid, whose images are flagged as damaged while `flagged` exists");
   app.add_option("--json", options.json, "what was done and what it cost");
   app.add_option("--truth", options.truth, "what the base did");
   CLI11_PARSE(app, argc, argv);
