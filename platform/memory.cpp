@@ -5,6 +5,7 @@
 #include <linux/capability.h>
 #include <malloc.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -123,9 +124,16 @@ bool lock_what_is_mapped() {
   return true;
 }
 
+/// khugepaged looks through every process each 10 s and copies 2 MB at a time; meanwhile no thread runs on a kernel that is not
+/// fully preemptible. Where it is refused, threads are late as before.
+void refuse_huge_pages() {
+  (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
+}
+
 }  // namespace
 
 MemoryReport lock_memory() {
+  refuse_huge_pages();
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
   if (limit.rlim_max == RLIM_INFINITY && limit.rlim_cur != RLIM_INFINITY) {

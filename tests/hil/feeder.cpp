@@ -6,6 +6,7 @@
 // it writes what it did and what it cost.
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -262,6 +263,7 @@ Result<void> write_report(const Options& options, const ImageThread& images, con
 int feed(const Options& options) {
   std::signal(SIGTERM, [](int) { stop_requested.store(true); });
   std::signal(SIGINT, [](int) { stop_requested.store(true); });
+  (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);  // to make its memory huge would cost the robot's time
   Controls controls;
   ImageThread images(options, controls);
   BaseThread base(options, controls);

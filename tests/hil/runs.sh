@@ -1,4 +1,4 @@
-# The runs of tools/hil by name. Sourced.
+# The runs of tools/hil by name. Sourced. CGSR_HIL_REPEAT says how often each fault, CGSR_HIL_FAULTS which ones.
 
 # run_hil NAME LONG
 #   timing    images of the scenario from memory; deadlines count
@@ -19,6 +19,7 @@ run_hil() {
     *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill, power_cut)" ;;
   esac
   if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$play_s"; fi
+  repeat="${CGSR_HIL_REPEAT:-$repeat}"
   local images="$hil/scenes/$scene/images.yuyv"
   memory_mb=$((memory_mb + $(stat -c %s "$images") / 1000000))
   prepare_job "$job" "$script" "$robot" "$camera" "$play_s" "$repeat" "$(wc -l <"$hil/scenes/$scene/stamps.txt")"
