@@ -23,6 +23,7 @@ STANDS_MPS = 0.02
 FOREIGN = (7, 0)           # what the second commander sends
 MOTION_PERIOD_S = 0.01
 CLOCK_STEP_S = 60.0         # what a wall clock does not do by itself between two lines
+TRACKED = {"round": ("corrected", "pose corrected"), "lamp": ("corrected", "pose corrected")}  # by its column; of the others, the object
 WITHOUT_FAULTS = ("devices", "webcam")  # the job's exit code says it all
 LINE = re.compile(r"^\((\d+\.\d+)\) \S+ (413|412)#([0-9A-F]*)")
 
@@ -206,7 +207,7 @@ def lateness(times):
     return [phase - earliest for phase in phases]
 
 
-def judge_timing(folder, scene, report):
+def judge_timing(name, folder, scene, report):
     at = {words[0]: time for time, words in marks(folder)}
     begin, end = at["play"], at["end"]
     times = [t for t, _, _ in commands(folder) if begin <= t <= end]
@@ -218,15 +219,15 @@ def judge_timing(folder, scene, report):
     report.add("worst lateness of the motion thread", f"{worst * 1e3:.3f} ms", "at most 1 ms", worst <= 1e-3)
     report.add("p99 lateness of the motion thread", f"{(percentile(late, 0.99) or 0) * 1e3:.3f} ms", "", None)
     report.add("longest gap between two commands", f"{max(gaps, default=0) * 1e3:.2f} ms", "", None)
-    judge_summary(folder, at, report)
-    judge_rows(folder, at, scene, report)
+    judge_summary(folder, report)
+    judge_rows(name, folder, scene, report)
     feeder = json.loads((folder / "feeder.json").read_text())
     for part in ("images", "base"):
         report.add(f"feeder, {part}: cost each", f"{feeder[part]['cpu_us_each']:.0f} us", "(taken from the robot's time)", None)
         report.add(f"feeder, {part}: worst lateness", f"{feeder[part]['worst_lateness_us']:.0f} us", "", None)
 
 
-def judge_summary(folder, at, report):
+def judge_summary(folder, report):
     summary = json.loads((folder / "summary.json").read_text())
     frames = summary["frames"]
     report.add("images", summary["images"], "", None)
@@ -237,22 +238,22 @@ def judge_summary(folder, at, report):
                    f"{stage['mean_us']:.0f} {stage['p99_us']:.0f} {stage['worst_us']:.0f} us, {stage['overruns']}", f"budget {stage['budget_us']} us", None)
 
 
-def judge_rows(folder, at, scene, report):
+def judge_rows(name, folder, scene, report):
     rows = list(csv.DictReader((folder / "rows.csv").open()))
     numbers = [int(row["frame"]) for row in rows]
     gaps = sum(b - a - 1 for a, b in zip(numbers, numbers[1:]))
     disorder = sum(b <= a for a, b in zip(numbers, numbers[1:]))
     report.add("images out of order", disorder, "0", disorder == 0)
     report.add("images lost", gaps, "0", gaps == 0)
-    first = next((float(row["stamp_s"]) for row in rows if row["found"] == "1"), None)
+    column, what = TRACKED.get(name, ("found", "object found"))
+    first = next((float(row["stamp_s"]) for row in rows if row[column] == "1"), None)
     report.add("boot to the first tracked image", f"{first:.1f} s" if first else "never", "at most 20 s", first is not None and first <= 20.0)
-    found = sum(row["found"] == "1" for row in rows)
-    report.add("object found", f"{found} of {len(rows)} images", "", None)
+    report.add(what, f"{sum(row[column] == '1' for row in rows)} of {len(rows)} images", "", None)
     reference = scene and scene / "rows.csv"
     if reference and reference.exists():
         wanted = list(csv.DictReader(reference.open()))
-        share = sum(row["found"] == "1" for row in wanted) / max(1, len(wanted))
-        report.add("object found in the lock-step run", f"{100 * share:.0f} % of its images", "", None)
+        share = sum(row[column] == "1" for row in wanted) / max(1, len(wanted))
+        report.add(f"{what} in the lock-step run", f"{100 * share:.0f} % of its images", "", None)
 
 
 def main():
@@ -273,7 +274,7 @@ def main():
             result["power_cut"] = {"cuts": options.cuts, "whole": options.whole}
         elif (options.folder / "marks.txt").exists():
             if any(words[0] == "play" for _, words in marks(options.folder)):
-                judge_timing(options.folder, options.scene, report)
+                judge_timing(options.name, options.folder, options.scene, report)
             elif options.name not in WITHOUT_FAULTS:
                 result["faults"] = judge_faults(options.folder, report)
         elif options.name not in WITHOUT_FAULTS:
