@@ -241,6 +241,7 @@ void flag_images(const Options& options, const Controls& controls) {
   Cost cost;
   std::string problem;
   cycle(kBasePeriod, cost, [&](MonoTime) {
+    if (!controls.flagged.load()) return button.release();
     for (int i = 0; i < kPresses && controls.flagged.load(); ++i) {
       const auto pressed = button.press();
       if (!pressed && pressed.error().message != problem) {

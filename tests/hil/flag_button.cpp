@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,8 +28,10 @@ std::uint32_t find_control(int fd, std::string_view name) {
 
 }  // namespace
 
-FlagButton::~FlagButton() {
+void FlagButton::release() {
   if (fd_ >= 0) ::close(fd_);
+  fd_ = -1;
+  control_ = 0;
 }
 
 Result<void> FlagButton::press() {
@@ -40,8 +41,7 @@ Result<void> FlagButton::press() {
   v4l2_control press{control_, 1};
   if (control_ == 0 || ioctl(fd_, VIDIOC_S_CTRL, &press) != 0) {
     const int error = errno;
-    ::close(std::exchange(fd_, -1));  // the camera may be another one when it is back
-    control_ = 0;
+    release();
     return fail(fmt::format("{}: the button that flags images cannot be pressed: {}", device_, std::strerror(error)));
   }
   return {};

@@ -11,12 +11,15 @@ namespace cgsr::hil {
 class FlagButton {
  public:
   explicit FlagButton(std::string device) : device_(std::move(device)) {}
-  ~FlagButton();
+  ~FlagButton() { release(); }
   FlagButton(const FlagButton&) = delete;
   FlagButton& operator=(const FlagButton&) = delete;
 
   /// Opens the device at the first press. \return an error when it has no such button.
   Result<void> press();
+
+  /// Closes the device: one that is open keeps its number when the camera goes and comes back.
+  void release();
 
  private:
   std::string device_;
