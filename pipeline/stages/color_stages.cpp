@@ -1,5 +1,6 @@
 #include "pipeline/stages/color_stages.h"
 
+#include "pipeline/runtime/stage_budget.h"
 #include "platform/count_marks.h"
 
 namespace cgsr::stages {
@@ -9,6 +10,8 @@ template <class Output>
 runtime::Aged<Output> fresh(Output output) {
   return {std::move(output), {}, Duration::zero()};
 }
+
+constexpr Duration kImagePeriod = seconds(1.0 / 30.0);  // nobody says when the images were taken
 
 }  // namespace
 
@@ -22,7 +25,7 @@ Result<ColorStages> ColorStages::make(const color::ColorModel& model, const colo
   stages.decode = std::make_unique<DecodeStage>(
       DecodeStage::Setup{max_width_px, max_height_px, search->labels(), search->object_shorter_side_px()});
   const color::SearchSize first = tracker->search_size();
-  stages.search = std::make_unique<SearchStage>(std::move(*search), first);
+  stages.search = std::make_unique<SearchStage>(std::move(*search), first, parameters.min_rest_confidence);
   stages.track = std::make_unique<TrackStage>(std::move(*tracker));
   return stages;
 }
@@ -31,7 +34,8 @@ Result<ColorLoop> ColorLoop::make(const color::ColorModel& model, const color::T
                                   int max_width_px, int max_height_px) {
   auto stages = ColorStages::make(model, parameters, max_width_px, max_height_px);
   if (!stages) return tl::unexpected(stages.error());
-  return ColorLoop(std::move(*stages));
+  const bool plain = parameters.mode == color::TrackMode::kPlain;
+  return ColorLoop(std::move(*stages), plain ? runtime::StageBudget::kAll : SearchStage::kRow.units);
 }
 
 bool ColorLoop::place(const ImageView& image, const Box& box) {
@@ -46,17 +50,22 @@ color::TrackedObject ColorLoop::track(const ImageView& image, WorkBudget& search
   const auto view = fresh(stages_.decode->update(image));
   count_stage_end(DecodeStage::kName.data());
   count_stage_begin();
-  const auto matches = fresh(stages_.search->update(search_budget, view, objects_));
+  if (auto matches = stages_.search->update(search_budget, view, objects_)) {
+    matches_ = fresh(std::move(*matches));
+  } else {
+    matches_.age = kImagePeriod;
+  }
   count_stage_end(SearchStage::kName.data());
   count_stage_begin();
-  objects_ = fresh(stages_.track->update(track_budget, image, view, matches, {}, {}));
+  objects_ = fresh(stages_.track->update(track_budget, image, view, matches_, {}, {}));
   count_stage_end(TrackStage::kName.data());
   return objects_.value.first().object;
 }
 
 color::TrackedObject ColorLoop::track(const ImageView& image) {
-  UnlimitedBudget unlimited;
-  return track(image, unlimited, unlimited);
+  auto search_budget = runtime::StageBudget::of_units(search_units_);
+  auto track_budget = runtime::StageBudget::of_units(TrackStage::kRow.units);
+  return track(image, search_budget, track_budget);
 }
 
 }  // namespace cgsr::stages

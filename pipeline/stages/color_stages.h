@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "pipeline/stages/search_stage.h"
@@ -35,14 +36,16 @@ class ColorLoop {
 
   /// \param search_budget, track_budget  for the units of the two stages.
   color::TrackedObject track(const ImageView& image, WorkBudget& search_budget, WorkBudget& track_budget);
-  /// The same with all the work that it asks for.
+  /// The same within the units of the stages' own rows (kRow), as a robot has them; mode plain searches exactly, whatever that takes.
   color::TrackedObject track(const ImageView& image);
 
  private:
-  explicit ColorLoop(ColorStages stages) : stages_(std::move(stages)) {}
+  ColorLoop(ColorStages stages, std::uint32_t search_units) : stages_(std::move(stages)), search_units_(search_units) {}
 
   ColorStages stages_;
+  std::uint32_t search_units_;
   runtime::Aged<TrackedObjects> objects_;
+  runtime::Aged<color::SearchResult> matches_;
 };
 
 }  // namespace cgsr::stages

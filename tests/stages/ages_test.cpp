@@ -57,18 +57,38 @@ class ColorEdges : public ::testing::Test {
 };
 
 TEST_F(ColorEdges, SearchAndTrackReadTheLabelsOfThisImageAlone) {
-  EXPECT_GT(stages_.search->update(budget_, aged(view_, kNow), {}).count, 0);
-  EXPECT_EQ(stages_.search->update(budget_, aged(view_, kFrame), {}).count, 0);
-  EXPECT_EQ(stages_.search->update(budget_, {}, {}).count, 0) << "decode never ran";
+  EXPECT_GT(stages_.search->update(budget_, aged(view_, kNow), {})->count, 0);
+  EXPECT_EQ(stages_.search->update(budget_, aged(view_, kFrame), {})->count, 0);
+  EXPECT_EQ(stages_.search->update(budget_, {}, {})->count, 0) << "decode never ran";
 
-  const auto matches = aged(stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
+  const auto matches = aged(*stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
   EXPECT_FALSE(
       stages_.track->update(budget_, image_.view(), aged(view_, kFrame), matches, {}, {}).first().object.found);
   EXPECT_TRUE(stages_.track->update(budget_, image_.view(), aged(view_, kNow), matches, {}, {}).first().object.found);
 }
 
+TEST_F(ColorEdges, EverySecondImageIsSearchedWhileTheObjectIsSure) {
+  TrackedObjects objects;
+  objects.count = 1;
+  objects.next_search = {40.0, 40.0};
+  objects.tracks.front().object.found = true;
+  const auto searched = [&](double confidence) {
+    objects.tracks.front().object.confidence = confidence;
+    return stages_.search->update(budget_, aged(view_, kNow), aged(objects, kFrame)).has_value();
+  };
+  EXPECT_FALSE(searched(0.95));
+  EXPECT_TRUE(searched(0.95));
+  EXPECT_FALSE(searched(0.95));
+  EXPECT_TRUE(searched(0.8)) << "in doubt";
+  EXPECT_TRUE(searched(0.8));
+  EXPECT_FALSE(searched(0.95));
+  objects.tracks.front().object.found = false;
+  EXPECT_TRUE(searched(0.95)) << "lost";
+  EXPECT_TRUE(searched(0.0)) << "mode plain gives no confidence";
+}
+
 TEST_F(ColorEdges, TrackDoesWithoutWindowsThatAreTooOld) {
-  const auto windows = stages_.search->update(budget_, aged(view_, kNow), {});
+  const auto windows = *stages_.search->update(budget_, aged(view_, kNow), {});
   const auto old = aged(windows, TrackStage::kMaxMatchesAge + kFrame);
   EXPECT_FALSE(stages_.track->update(budget_, image_.view(), aged(view_, kNow), old, {}, {}).first().object.found);
   const auto young = aged(windows, TrackStage::kMaxMatchesAge);
@@ -76,7 +96,7 @@ TEST_F(ColorEdges, TrackDoesWithoutWindowsThatAreTooOld) {
 }
 
 TEST_F(ColorEdges, TrackLooksForNothingWhenTheLastDecisionSaysSo) {
-  const auto matches = aged(stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
+  const auto matches = aged(*stages_.search->update(budget_, aged(view_, kNow), {}), kNow);
   const Requests none{.track = false, .check = {}, .lamps = {}};
   EXPECT_FALSE(
       stages_.track->update(budget_, image_.view(), aged(view_, kNow), matches, {}, none).first().object.found);

@@ -105,12 +105,12 @@ struct Color {
   UnlimitedBudget budget;
 
   View view() { return stages.decode->update(image.view()); }
-  color::SearchResult windows() { return stages.search->update(budget, after(0, Failure::kLags, view()), {}); }
+  color::SearchResult windows() { return *stages.search->update(budget, after(0, Failure::kLags, view()), {}); }
 };
 
 bool search_reads_decode(int frames, Failure failure) {
   Color c;
-  return c.stages.search->update(c.budget, after(frames, failure, c.view()), {}).count > 0;
+  return c.stages.search->update(c.budget, after(frames, failure, c.view()), {})->count > 0;
 }
 
 bool search_reads_track(int frames, Failure failure) {
@@ -118,8 +118,8 @@ bool search_reads_track(int frames, Failure failure) {
   TrackedObjects objects;
   objects.next_search = {100.0, 100.0};
   const auto view = after(0, failure, c.view());
-  const int first = c.stages.search->update(c.budget, view, {}).windows;
-  return c.stages.search->update(c.budget, view, after(frames, failure, objects)).windows != first;
+  const int first = c.stages.search->update(c.budget, view, {})->windows;
+  return c.stages.search->update(c.budget, view, after(frames, failure, objects))->windows != first;
 }
 
 bool track_reads_decode(int frames, Failure failure) {

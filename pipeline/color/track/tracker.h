@@ -98,6 +98,7 @@ struct TrackParameters {
   double max_divergence = 0.40;
   int candidates = 3;
   double max_size_ratio = 5.0;
+  double min_rest_confidence = 0.9;
   SearchParameters search;
   LocalParameters local;
   LightFollowerParameters light;
@@ -114,6 +115,10 @@ struct TrackParameters {
                  "The number of best windows of the search that are examined closely.");
     visit.number("max_size_ratio", self.max_size_ratio, {1.0, 20.0}, "",
                  "The largest ratio between a side of the box and the learned one, upwards and downwards.");
+    visit.number(
+        "min_rest_confidence", self.min_rest_confidence, {0.0, 1.0}, "",
+        "While the object is followed with at least this confidence, only every second image is searched; what "
+        "the search finds serves when the object is in doubt.");
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");
     visit.section("light", self.light, "The light of the object from image to image");
