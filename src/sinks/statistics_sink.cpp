@@ -18,7 +18,7 @@ constexpr std::size_t kMaxWords = 64;  // of one field; more are no states
 /// Counts what the fields of one output are, in their order; a list has another length every time and is left out.
 class FieldCounter {
  public:
-  static constexpr bool kOfType = false;
+  [[maybe_unused]] static constexpr bool kOfType = false;  // asked where an output has a list
 
   explicit FieldCounter(std::vector<FieldStatistics>& fields) : fields_(fields) {}
 
