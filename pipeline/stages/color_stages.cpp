@@ -50,8 +50,8 @@ color::TrackedObject ColorLoop::track(const ImageView& image, WorkBudget& search
   const auto view = fresh(stages_.decode->update(image));
   count_stage_end(DecodeStage::kName.data());
   count_stage_begin();
-  if (auto matches = stages_.search->update(search_budget, view, objects_)) {
-    matches_ = fresh(std::move(*matches));
+  if (const auto matches = stages_.search->update(search_budget, view, objects_)) {
+    matches_ = fresh(*matches);
   } else {
     matches_.age = kImagePeriod;
   }
