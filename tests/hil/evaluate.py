@@ -130,6 +130,8 @@ def judge_fault(name, kind, steps, sent, states):
     if "ended" not in steps:
         result["met"] = False
         return result
+    # The strictest expectation, whatever this fault's is: it stands beside the verdict.
+    result["stood"] = not any((v or w) and begin + ZERO_WITHIN_S < t < steps["ended"] for t, v, w in own)
     if kind == "goes_on":
         met = judge_going_on(result, steps, own)
     else:

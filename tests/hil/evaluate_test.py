@@ -58,6 +58,13 @@ class Judge(unittest.TestCase):
         self.assertFalse(self.judge(self.drive_until(1.1, again=1.3), self.steps("disk_full", "goes_on"))[0])
         self.assertFalse(self.judge(self.drive_until(1.1, again=9.0), self.steps("disk_full", "goes_on"))[0])
 
+    def test_whether_it_stood_is_told_of_every_fault(self):
+        self.assertTrue(self.judge(self.drive_until(1.12), self.steps("bus_down", "latches"))[1][0]["stood"])
+        self.assertFalse(self.judge(self.drive_until(1.25), self.steps("bus_down", "latches"))[1][0]["stood"])
+        passed, faults = self.judge(self.drive_until(9.0), self.steps("camera_queue", "goes_on"))
+        self.assertTrue(passed)
+        self.assertFalse(faults[0]["stood"], "it went on: met, and no stop")
+
     def test_a_dead_process_may_not_command(self):
         self.assertFalse(self.judge(self.drive_until(1.1), self.steps("killed", "dies"))[0])
 

@@ -32,8 +32,8 @@ def seconds(values, digits=2):
 
 def table(results):
     lines = ["| fault | expected | injected | last motion command after it, worst, s | allowed, s | moves again after its end or the arming, worst, s "
-             "| base stands after the last command, worst, s | met |",
-             "|---|---|---|---|---|---|---|---|"]
+             "| base stands after the last command, worst, s | met | stood from 0.2 s after it until its end |",
+             "|---|---|---|---|---|---|---|---|---|"]
     for name in dict.fromkeys(result["fault"] for result in results):
         own = [result for result in results if result["fault"] == name]
         allowed = next((r["allowed_s"] for r in own if "allowed_s" in r), "-")
@@ -43,7 +43,7 @@ def table(results):
             last = seconds([r.get("last_motion_s") for r in own], 3)
         lines.append(f"| {WORDS.get(name, name)} | {KINDS.get(own[0]['kind'], own[0]['kind'])} | {len(own)} | {last} | {allowed} "
                      f"| {seconds([r.get('back_s') for r in own])} | {seconds([r.get('base_stands_s') for r in own])} "
-                     f"| {sum(r['met'] for r in own)} of {len(own)} |")
+                     f"| {sum(r['met'] for r in own)} of {len(own)} | {sum(r.get('stood', False) for r in own)} of {len(own)} |")
     return "\n".join(lines)
 
 
