@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "platform/error.h"
 #include "platform/image_lease.h"
@@ -23,6 +24,21 @@ enum class CaptureFailure : std::uint8_t {
   kDisconnected,  ///< the device is gone or not started: stop, then start again.
   kEndOfStream,   ///< a recording ended: no further image will come.
 };
+constexpr std::string_view to_string(CaptureFailure failure) {
+  switch (failure) {
+    case CaptureFailure::kTimeout:
+      return "timeout";
+    case CaptureFailure::kNoSlot:
+      return "no free slot";
+    case CaptureFailure::kCorrupt:
+      return "corrupt";
+    case CaptureFailure::kDisconnected:
+      return "disconnected";
+    case CaptureFailure::kEndOfStream:
+      return "end of stream";
+  }
+  return "";
+}
 
 /// A camera that streams YUYV. An implementation that cannot do something says so with an error, never with a silent
 /// default.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "platform/error.h"
 #include "platform/time.h"
@@ -25,6 +26,17 @@ enum class CanSendFailure : std::uint8_t {
   kBusOff,     ///< the controller took itself off the bus after too many errors.
   kGone,       ///< the interface is down, unplugged or was never started.
 };
+constexpr std::string_view to_string(CanSendFailure failure) {
+  switch (failure) {
+    case CanSendFailure::kQueueFull:
+      return "queue full";
+    case CanSendFailure::kBusOff:
+      return "bus off";
+    case CanSendFailure::kGone:
+      return "interface gone";
+  }
+  return "";
+}
 
 /// How well the controller is with the bus (ISO 11898-1: error counters below 96, 128, 256).
 enum class CanState : std::uint8_t {
@@ -34,6 +46,21 @@ enum class CanState : std::uint8_t {
   kBusOff,   ///< neither sends nor receives until it is restarted.
   kGone,     ///< as CanSendFailure::kGone.
 };
+constexpr std::string_view to_string(CanState state) {
+  switch (state) {
+    case CanState::kActive:
+      return "active";
+    case CanState::kWarning:
+      return "warning";
+    case CanState::kPassive:
+      return "passive";
+    case CanState::kBusOff:
+      return "bus off";
+    case CanState::kGone:
+      return "interface gone";
+  }
+  return "";
+}
 
 /// Counts since start(); none of them ever falls.
 struct CanCounters {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "platform/error.h"
 #include "platform/time.h"
@@ -29,6 +30,19 @@ enum class DriveFailure : std::uint8_t {
   kSendFailed,  ///< the command did not leave this computer.
   kNoFeedback,  ///< nothing heard from the base yet, or nothing recent enough to drive on.
 };
+constexpr std::string_view to_string(DriveFailure failure) {
+  switch (failure) {
+    case DriveFailure::kNotStarted:
+      return "not started";
+    case DriveFailure::kNotReady:
+      return "not ready";
+    case DriveFailure::kSendFailed:
+      return "send failed";
+    case DriveFailure::kNoFeedback:
+      return "no feedback";
+  }
+  return "";
+}
 
 /// A base that is driven by velocity commands and reports odometry.
 ///

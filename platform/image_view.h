@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 namespace cgsr {
 
@@ -10,6 +11,17 @@ enum class PixelFormat : std::uint8_t {
   kGrey8,  ///< one byte of luma.
   kBgr24,  ///< three bytes, sRGB-encoded. Only for drawing, learning and files; never on the frame path.
 };
+constexpr std::string_view to_string(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kYuyv:
+      return "yuyv";
+    case PixelFormat::kGrey8:
+      return "grey8";
+    case PixelFormat::kBgr24:
+      return "bgr24";
+  }
+  return "";
+}
 
 /// An image that lies elsewhere: never owns, never copies. Pixels count from 0 at the centre of the top-left pixel.
 struct ImageView {

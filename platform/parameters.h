@@ -42,4 +42,14 @@ struct Named {
   Enum value;
 };
 
+/// What the to_string() of an enum with such a table consists of, so that the table is the only source of its words.
+/// \return the word of `value`; empty when the table misses it.
+template <class Enum, class Names>
+constexpr std::string_view word_in(const Names& names, Enum value) {
+  for (const Named<Enum>& named : names) {
+    if (named.value == value) return named.name;
+  }
+  return "";
+}
+
 }  // namespace cgsr

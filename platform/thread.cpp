@@ -87,11 +87,17 @@ std::size_t stack_left() {
   return std::max(static_cast<std::size_t>(left), 2 * kStackMargin);
 }
 
-std::string_view to_string(SchedulingPolicy policy) {
-  return policy == SchedulingPolicy::kFifo ? "SCHED_FIFO" : "SCHED_OTHER";
-}
-
 }  // namespace
+
+std::string_view to_string(SchedulingPolicy policy) {
+  switch (policy) {
+    case SchedulingPolicy::kOther:
+      return "SCHED_OTHER";
+    case SchedulingPolicy::kFifo:
+      return "SCHED_FIFO";
+  }
+  return "";
+}
 
 void* ThreadTable::Entry::run(void* self) {
   auto& entry = *static_cast<Entry*>(self);

@@ -19,6 +19,7 @@ enum class SchedulingPolicy : std::uint8_t {
   kOther,  ///< the kernel's ordinary fair share
   kFifo,   ///< SCHED_FIFO: runs until it sleeps or a higher priority wants the core
 };
+std::string_view to_string(SchedulingPolicy policy);
 
 /// One row of the table of threads.
 struct ThreadSpec {

@@ -1,4 +1,4 @@
-"""What tools/check_words.py and tools/check_citations.py share: the root from the command line, a line for each problem, the exit code."""
+"""What tools/check_words.py, check_enums.py and check_citations.py share: the root from the command line, a line for each problem, the exit code."""
 import pathlib
 import sys
 

@@ -6,6 +6,16 @@
 
 namespace cgsr::hal {
 
+std::string_view to_string(LineDirection direction) {
+  switch (direction) {
+    case LineDirection::kOutput:
+      return "output";
+    case LineDirection::kInput:
+      return "input";
+  }
+  return "";
+}
+
 Result<void> DummySwitches::start() {
   const std::lock_guard lock(mutex_);
   if (started_) return fail("dummy switches: started twice");

@@ -11,6 +11,7 @@
 namespace cgsr::hal {
 
 enum class LineDirection : std::uint8_t { kOutput, kInput };
+std::string_view to_string(LineDirection direction);
 
 struct DummyLine {
   std::string name;

@@ -16,6 +16,20 @@ double approach(double value, double target, double most) {
 
 }  // namespace
 
+std::string_view to_string(DriveMood mood) {
+  switch (mood) {
+    case DriveMood::kWell:
+      return "well";
+    case DriveMood::kNotReady:
+      return "not ready";
+    case DriveMood::kSendFails:
+      return "send fails";
+    case DriveMood::kFeedbackStops:
+      return "feedback stops";
+  }
+  return "";
+}
+
 Result<void> KinematicDrive::start() {
   if (started_) return fail("kinematic drive: started twice");
   started_ = true;

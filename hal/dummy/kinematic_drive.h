@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "hal/drive.h"
 #include "platform/parameters.h"
@@ -38,6 +39,7 @@ enum class DriveMood : std::uint8_t {
   kSendFails,  ///< the cable is out: commands fail with kSendFailed, odometry goes stale, the base slows to zero by itself.
   kFeedbackStops  ///< commands arrive, odometry stays what it was.
 };
+std::string_view to_string(DriveMood mood);
 
 /// A base without wheels: a unicycle whose speed and turn follow the command with limited acceleration.
 ///

@@ -32,6 +32,18 @@ Result<std::unique_ptr<ImageSource>> open_folder(const std::string& path) {
 
 }  // namespace
 
+std::string_view to_string(ReadOutcome outcome) {
+  switch (outcome) {
+    case ReadOutcome::kImage:
+      return "image";
+    case ReadOutcome::kRefused:
+      return "refused";
+    case ReadOutcome::kEnd:
+      return "end";
+  }
+  return "";
+}
+
 bool named_like_image(const std::string& file_name) {
   if (file_name.empty() || file_name.front() == '.') return false;  // "._0001.jpg" is what macOS leaves behind
   std::string extension = fs::path(file_name).extension().string();

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -14,6 +15,7 @@ namespace cgsr::hal {
 inline constexpr int kLongestSide_px = 8192;
 
 enum class ReadOutcome { kImage, kRefused, kEnd };
+std::string_view to_string(ReadOutcome outcome);
 
 /// Images out of files, one after the other, as 8-bit B G R. No clock, no slots, no threads: the camera around it has them.
 /// Nothing throws: what a library throws becomes kRefused.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -20,6 +21,9 @@ namespace cgsr::hal {
 enum class ReplayPace : std::uint8_t { kAsFastAsPossible, kOwnRate };
 inline constexpr Named<ReplayPace> kReplayPaceNames[] = {{"as_fast_as_possible", ReplayPace::kAsFastAsPossible},
                                                          {"own_rate", ReplayPace::kOwnRate}};
+constexpr std::string_view to_string(ReplayPace pace) {
+  return word_in(kReplayPaceNames, pace);
+}
 
 struct ReplayParameters {
   std::string path;

@@ -24,6 +24,16 @@ void put(CanFrame& frame, std::size_t n, std::uint16_t value) {
 
 }  // namespace
 
+std::string_view to_string(DecodeFailure failure) {
+  switch (failure) {
+    case DecodeFailure::kUnknownId:
+      return "unknown id";
+    case DecodeFailure::kWrongSize:
+      return "wrong size";
+  }
+  return "";
+}
+
 tl::expected<Message, DecodeFailure> decode(const CanFrame& f) {
   const auto id = MessageId{f.id};
   if (id == MessageId::kShutdown) return Shutdown{};

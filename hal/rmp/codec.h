@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include <tl/expected.hpp>
 
@@ -18,6 +19,7 @@ enum class DecodeFailure : std::uint8_t {
   kUnknownId,  ///< of another family, or of a later one (0x0500..: RMP 210/220/440).
   kWrongSize,  ///< every message but the shutdown has eight bytes.
 };
+std::string_view to_string(DecodeFailure failure);
 
 /// \return what the frame says. Never fails on the contents: whether a value is plausible is for the driver to judge.
 tl::expected<Message, DecodeFailure> decode(const CanFrame& frame);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <variant>
 
 namespace cgsr::hal::rmp {
@@ -24,6 +25,38 @@ enum class MessageId : std::uint16_t {
   kStatus = 0x680,
   kUserInterface = 0x688,
 };
+/// \return empty for an id that is none of these: what comes from the bus may be any.
+constexpr std::string_view to_string(MessageId id) {
+  switch (id) {
+    case MessageId::kBuild:
+      return "build";
+    case MessageId::kAttitude:
+      return "attitude";
+    case MessageId::kMotion:
+      return "motion";
+    case MessageId::kWheelDistances:
+      return "wheel distances";
+    case MessageId::kIntegrated:
+      return "integrated";
+    case MessageId::kTorques:
+      return "torques";
+    case MessageId::kModeAndPower:
+      return "mode and power";
+    case MessageId::kEcho:
+      return "echo";
+    case MessageId::kShutdown:
+      return "shutdown";
+    case MessageId::kCommand:
+      return "command";
+    case MessageId::kUnexplained:
+      return "unexplained";
+    case MessageId::kStatus:
+      return "status";
+    case MessageId::kUserInterface:
+      return "user interface";
+  }
+  return "";
+}
 
 /// 0x0413, to the base: at most one in 10 ms, at least one in 300 ms. After 400 ms without one it slows to zero.
 struct Command {
@@ -43,8 +76,33 @@ enum class Configuration : std::uint16_t {
   kResetIntegrators =
       50,  ///< parameter: 1 right wheel, 2 left wheel, 4 yaw, 8 fore/aft. Does not always take; not used.
 };
+constexpr std::string_view to_string(Configuration configuration) {
+  switch (configuration) {
+    case Configuration::kNone:
+      return "none";
+    case Configuration::kOperationalMode:
+      return "operational mode";
+    case Configuration::kResetIntegrators:
+      return "reset integrators";
+  }
+  return "";
+}
 
 enum class OperationalMode : std::uint16_t { kDisabled = 0, kTractor = 1, kBalance = 2, kPowerDown = 3 };
+/// \return empty for a mode that is none of these: what comes from the bus may be any.
+constexpr std::string_view to_string(OperationalMode mode) {
+  switch (mode) {
+    case OperationalMode::kDisabled:
+      return "disabled";
+    case OperationalMode::kTractor:
+      return "tractor";
+    case OperationalMode::kBalance:
+      return "balance";
+    case OperationalMode::kPowerDown:
+      return "power down";
+  }
+  return "";
+}
 
 struct Build {
   std::uint16_t build = 0;

@@ -18,6 +18,20 @@ double difference(std::uint32_t from, std::uint32_t to) {
 
 }  // namespace
 
+std::string_view to_string(Odometer::Outcome outcome) {
+  switch (outcome) {
+    case Odometer::Outcome::kBaseline:
+      return "baseline";
+    case Odometer::Outcome::kTravelled:
+      return "travelled";
+    case Odometer::Outcome::kJump:
+      return "jump";
+    case Odometer::Outcome::kNewBaseline:
+      return "new baseline";
+  }
+  return "";
+}
+
 Odometer::Odometer(const RmpScales& scales, double most_mps, double most_radps)
     : m_per_count_(1.0 / scales.displacement_per_m),
       rad_per_count_(2.0 * std::numbers::pi / scales.yaw_per_rev),

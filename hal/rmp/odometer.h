@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "hal/rmp/messages.h"
 #include "hal/rmp/scales.h"
@@ -57,5 +58,7 @@ class Odometer {
   std::optional<Reading> suspect_;
   Pose pose_;
 };
+
+std::string_view to_string(Odometer::Outcome outcome);
 
 }  // namespace cgsr::hal::rmp

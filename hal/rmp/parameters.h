@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "hal/rmp/scales.h"
 #include "platform/parameters.h"
@@ -14,6 +15,9 @@ enum class ModeAtStart : std::uint8_t { kKeep, kTractor, kBalance };
 inline constexpr std::array kModeAtStartNames = {Named<ModeAtStart>{"keep", ModeAtStart::kKeep},
                                                  Named<ModeAtStart>{"tractor", ModeAtStart::kTractor},
                                                  Named<ModeAtStart>{"balance", ModeAtStart::kBalance}};
+constexpr std::string_view to_string(ModeAtStart mode) {
+  return word_in(kModeAtStartNames, mode);
+}
 
 struct RmpParameters {
   ModeAtStart mode_at_start = ModeAtStart::kKeep;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "hal/drive.h"
 #include "hal/rmp/messages.h"
@@ -13,6 +14,9 @@ enum class Sign : std::uint8_t { kAsReported, kNegated };
 
 inline constexpr std::array kSignNames = {Named<Sign>{"as_reported", Sign::kAsReported},
                                           Named<Sign>{"negated", Sign::kNegated}};
+constexpr std::string_view to_string(Sign sign) {
+  return word_in(kSignNames, sign);
+}
 
 /// Counts per unit. The defaults are the RMP 200's and 400's; README.md has the RMP 50's and what is disputed about
 /// which (D1, D2, D4).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "hal/rmp/messages.h"
 #include "hal/rmp/scales.h"
@@ -35,5 +36,17 @@ class YawCheck {
   int balance_ = 0;
   Verdict verdict_ = Verdict::kOpen;
 };
+
+constexpr std::string_view to_string(YawCheck::Verdict verdict) {
+  switch (verdict) {
+    case YawCheck::Verdict::kOpen:
+      return "open";
+    case YawCheck::Verdict::kAgrees:
+      return "agrees";
+    case YawCheck::Verdict::kContradicts:
+      return "contradicts";
+  }
+  return "";
+}
 
 }  // namespace cgsr::hal::rmp

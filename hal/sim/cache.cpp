@@ -71,12 +71,25 @@ std::vector<Kept> entries_of(const fs::path& folder) {
 
 }  // namespace
 
+std::string_view to_string(ImageSource source) {
+  switch (source) {
+    case ImageSource::kRobotFile:
+      return "robot file";
+    case ImageSource::kRecord:
+      return "record";
+    case ImageSource::kRecorded:
+      return "recorded";
+  }
+  return "";
+}
+
 Result<ImageSource> image_source() {
   const char* value = std::getenv("CGSR_SIM_IMAGES");
   const std::string_view word = value == nullptr ? "" : value;
   if (word.empty()) return ImageSource::kRobotFile;
-  if (word == "record") return ImageSource::kRecord;
-  if (word == "recorded") return ImageSource::kRecorded;
+  for (const ImageSource source : {ImageSource::kRecord, ImageSource::kRecorded}) {
+    if (word == to_string(source)) return source;
+  }
   return fail(fmt::format("CGSR_SIM_IMAGES = '{}': expected 'record' or 'recorded', or no such variable", word));
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/sim/render/photographer.h"
@@ -24,6 +25,8 @@ enum class ImageSource : std::uint8_t {
   kRecord,     ///< "record": drawn and kept.
   kRecorded,   ///< "recorded": read; an image that was not kept ends the run with an error.
 };
+/// \return the word of CGSR_SIM_IMAGES; of kRobotFile, which has none, what it means.
+std::string_view to_string(ImageSource source);
 /// \return an error that names the words that it may have.
 Result<ImageSource> image_source();
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "platform/parameters.h"
 
@@ -11,6 +12,9 @@ namespace cgsr::hal::v4l2 {
 enum class StreamFormat : std::uint8_t { kYuyv, kMjpeg };
 inline constexpr std::array kStreamFormatNames{Named<StreamFormat>{"yuyv", StreamFormat::kYuyv},
                                                Named<StreamFormat>{"mjpeg", StreamFormat::kMjpeg}};
+constexpr std::string_view to_string(StreamFormat format) {
+  return word_in(kStreamFormatNames, format);
+}
 
 /// A camera at a video device of this computer.
 struct V4l2Parameters {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "pipeline/imaging/color_code.h"
 #include "platform/parameters.h"
@@ -15,6 +16,9 @@ inline constexpr std::array kColorSpaceNames{
     Named<ColorSpace>{"hsv", ColorSpace::kHsv},
     Named<ColorSpace>{"yuv", ColorSpace::kYuv},
 };
+constexpr std::string_view to_string(ColorSpace space) {
+  return word_in(kColorSpaceNames, space);
+}
 
 /// How a colour histogram divides colours: a colour space cut into per_channel^3 bins of equal width (Alg. 3.1, line 21; 8 x 8 x 8
 /// of RGB in section 3.3.1).

@@ -88,6 +88,20 @@ void every_eight(const Row row, std::ptrdiff_t width) {
 
 }  // namespace
 
+std::string_view to_string(ReduceFailure failure) {
+  switch (failure) {
+    case ReduceFailure::kNotYuyv:
+      return "not YUYV";
+    case ReduceFailure::kBadSize:
+      return "bad size";
+    case ReduceFailure::kBadFactor:
+      return "bad factor";
+    case ReduceFailure::kBadTable:
+      return "bad label table";
+  }
+  return "";
+}
+
 ReducedImage::ReducedImage(int max_width_px, int max_height_px)
     : grey(static_cast<std::size_t>(max_width_px) * static_cast<std::size_t>(max_height_px)), labels(grey.size()) {}
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -33,6 +34,7 @@ enum class ReduceFailure : std::uint8_t {
   kBadFactor,  ///< neither 1 nor 2.
   kBadTable,   ///< the label table has not kColorCodes entries.
 };
+std::string_view to_string(ReduceFailure failure);
 
 /// One pass over a YUYV image: factor 2 averages 2x2 pixels (rounded half up), factor 1 keeps every pixel and shares its pair's
 /// chroma. An odd last row is left out at factor 2. grey is the mean luma as the camera coded it, labels is table[colour code].

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "platform/parameters.h"
 
@@ -15,6 +16,9 @@ enum class Method : std::uint8_t {
 
 inline constexpr Named<Method> kMethodNames[] = {
     {"glcorrect", Method::kGlCorrect}, {"stronger", Method::kStronger}, {"paper", Method::kPaper}};
+constexpr std::string_view to_string(Method method) {
+  return word_in(kMethodNames, method);
+}
 
 /// What draws the edges that should be visible (4.2).
 enum class ExpectationKind : std::uint8_t {
@@ -24,6 +28,9 @@ enum class ExpectationKind : std::uint8_t {
 
 inline constexpr Named<ExpectationKind> kExpectationKindNames[] = {{"raster", ExpectationKind::kRaster},
                                                                    {"osmesa", ExpectationKind::kOsmesa}};
+constexpr std::string_view to_string(ExpectationKind kind) {
+  return word_in(kExpectationKindNames, kind);
+}
 
 /// What counts as evidence for a pose, and how much of it the gate requires. Evidence is in units of agreement: 1 where all of the map that
 /// should be visible is in the image.

@@ -58,6 +58,16 @@ StopCause graver(StopCause a, StopCause b) {
 
 }  // namespace
 
+std::string_view to_string(MotionLoop::Mode mode) {
+  switch (mode) {
+    case MotionLoop::Mode::kLive:
+      return "live";
+    case MotionLoop::Mode::kDryRun:
+      return "dry run";
+  }
+  return "";
+}
+
 MotionLoop::MotionLoop(std::unique_ptr<hal::Drive> drive, const MotionParameters& parameters, Mode mode)
     : drive_(std::move(drive)),
       latch_(dynamic_cast<hal::FaultLatch*>(drive_.get())),

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string_view>
 
 #include "hal/drive.h"
 #include "hal/fault_latch.h"
@@ -78,5 +79,7 @@ class MotionLoop {
   bool late_ = false;
   int steps_in_time_ = 0;  // since the last late one
 };
+
+std::string_view to_string(MotionLoop::Mode mode);
 
 }  // namespace cgsr

@@ -2,6 +2,18 @@
 
 namespace cgsr {
 
+std::string_view to_string(ArmRequest request) {
+  switch (request) {
+    case ArmRequest::kNone:
+      return "none";
+    case ArmRequest::kArm:
+      return "arm";
+    case ArmRequest::kDisarm:
+      return "disarm";
+  }
+  return "";
+}
+
 std::string_view to_string(StopCause cause) {
   switch (cause) {
     case StopCause::kNone:

@@ -44,6 +44,7 @@ struct Goal {
 };
 
 enum class ArmRequest : std::uint8_t { kNone, kArm, kDisarm };
+std::string_view to_string(ArmRequest request);
 
 /// What a step is told. A default-constructed one permits no motion.
 struct MotionInputs {

@@ -17,10 +17,6 @@ std::int64_t in_us(Duration duration) {
   return std::chrono::duration_cast<std::chrono::microseconds>(duration).count();
 }
 
-std::string_view word(OnOverrun on_overrun) {
-  return kOnOverrunNames[static_cast<std::size_t>(on_overrun)].name;
-}
-
 std::vector<std::string> problems_of_rows(const std::vector<ScheduleRow>& rows) {
   std::vector<std::string> problems;
   if (rows.size() > kMostStages) {
@@ -130,7 +126,7 @@ std::string to_text(const Schedule& schedule) {
                  "on overrun");
   for (const auto& [name, row] : schedule.rows()) {
     fmt::format_to(out, "{:<16} {:>5} {:>5} {:>9} {:>7}  {}\n", name, row.every_frames, row.phase, row.budget_us,
-                   row.units == 0 ? "all" : std::to_string(row.units), word(row.on_overrun));
+                   row.units == 0 ? "all" : std::to_string(row.units), to_string(row.on_overrun));
   }
   std::uint64_t fullest = 0;
   for (std::uint64_t frame = 1; frame < schedule.hyperperiod_frames(); ++frame) {

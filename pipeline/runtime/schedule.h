@@ -22,6 +22,9 @@ enum class OnOverrun : std::uint8_t {
 };
 inline constexpr Named<OnOverrun> kOnOverrunNames[] = {{"skip", OnOverrun::kSkip},
                                                        {"stop_motion", OnOverrun::kStopMotion}};
+constexpr std::string_view to_string(OnOverrun on_overrun) {
+  return word_in(kOnOverrunNames, on_overrun);
+}
 
 /// One row of the schedule as the robot's file has it.
 struct StageParameters {

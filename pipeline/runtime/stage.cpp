@@ -11,6 +11,16 @@
 
 namespace cgsr::runtime {
 
+std::string_view to_string(BudgetSource source) {
+  switch (source) {
+    case BudgetSource::kClock:
+      return "clock";
+    case BudgetSource::kUnits:
+      return "units";
+  }
+  return "";
+}
+
 StageRunner::StageRunner(const Clock& clock, Schedule schedule, BudgetSource source, MotionStop& stop)
     : clock_(clock), schedule_(std::move(schedule)), source_(source), stop_(stop), table_(schedule_) {}
 

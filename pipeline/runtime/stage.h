@@ -95,6 +95,7 @@ enum class BudgetSource : std::uint8_t {
   kClock,  ///< live: budget_us of the schedule.
   kUnits,  ///< lock-step, counting: units of the schedule; nothing overruns or is late on however slow a machine.
 };
+std::string_view to_string(BudgetSource source);
 
 /// Runs stages: gives each its turn and its budget, measures it, keeps the records, and lets no exception pass.
 ///

@@ -34,6 +34,18 @@ Result<Soup> read_soup(const std::filesystem::path& path, const std::string& end
 
 }  // namespace
 
+std::string_view to_string(UpAxis axis) {
+  switch (axis) {
+    case UpAxis::kByFormat:
+      return "format";
+    case UpAxis::kZ:
+      return "z";
+    case UpAxis::kY:
+      return "y";
+  }
+  return "";
+}
+
 Result<Map> load_map(const std::filesystem::path& path, const LoadOptions& options) {
   const std::string ending = ending_of(path);
   if (ending == kCompactExtension) return read_compact(path);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 #include "pipeline/world/map.h"
 #include "platform/error.h"
@@ -13,6 +14,8 @@ enum class UpAxis : std::uint8_t {
   kZ,
   kY,
 };
+/// \return the word of --up.
+std::string_view to_string(UpAxis axis);
 
 struct LoadOptions {
   UpAxis up = UpAxis::kByFormat;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,6 +40,19 @@ enum class EdgeKind : std::uint8_t {
   kMaterial,  ///< two coplanar surfaces of different materials meet.
   kDrawn,     ///< a line of the file's own (ViSP's .cao); no surfaces.
 };
+constexpr std::string_view to_string(EdgeKind kind) {
+  switch (kind) {
+    case EdgeKind::kCrease:
+      return "crease";
+    case EdgeKind::kBorder:
+      return "border";
+    case EdgeKind::kMaterial:
+      return "material";
+    case EdgeKind::kDrawn:
+      return "drawn";
+  }
+  return "";
+}
 
 /// A straight line of the map, once; its index in Map::edges is its id.
 ///

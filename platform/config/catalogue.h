@@ -51,11 +51,8 @@ class Catalogue {
   template <class Enum, class Names>
   void choice(std::string_view name, Enum value, const Names& names, std::string_view meaning) {
     std::string words;
-    std::string word;  // stays empty, which no reader takes, when the table misses an enumerator
-    for (const Named<Enum>& named : names) {
-      words += (words.empty() ? "" : ", ") + std::string(named.name);
-      if (named.value == value) word = named.name;
-    }
+    for (const Named<Enum>& named : names) words += (words.empty() ? "" : ", ") + std::string(named.name);
+    const std::string word(word_in(names, value));  // empty, which no reader takes, when the table misses an enumerator
     add_choice(name, word, words, meaning);
   }
 

@@ -12,8 +12,13 @@ namespace cgsr::app {
 
 /// Adds --up and --scale: how the numbers of a map file become metres with z up.
 inline void add_map_frame_options(CLI::App& command, world::LoadOptions& load) {
-  static const std::map<std::string, world::UpAxis> kAxes{
-      {"format", world::UpAxis::kByFormat}, {"z", world::UpAxis::kZ}, {"y", world::UpAxis::kY}};
+  static const std::map<std::string, world::UpAxis> kAxes = [] {
+    std::map<std::string, world::UpAxis> axes;
+    for (const auto axis : {world::UpAxis::kByFormat, world::UpAxis::kZ, world::UpAxis::kY}) {
+      axes.emplace(to_string(axis), axis);
+    }
+    return axes;
+  }();
   command
       .add_option_function<std::string>(
           "--up", [&load](const std::string& word) { load.up = kAxes.at(word); },

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "hal/dummy/kinematic_drive.h"
 #include "hal/replay/replay_camera.h"
@@ -22,19 +23,31 @@ enum class CameraKind : std::uint8_t { kReplay, kSim, kV4l2 };
 inline constexpr std::array kCameraKindNames{Named<CameraKind>{"replay", CameraKind::kReplay},
                                              Named<CameraKind>{"sim", CameraKind::kSim},
                                              Named<CameraKind>{"v4l2", CameraKind::kV4l2}};
+constexpr std::string_view to_string(CameraKind kind) {
+  return word_in(kCameraKindNames, kind);
+}
 
 enum class BaseKind : std::uint8_t { kKinematic, kRmp };
 inline constexpr std::array kBaseKindNames{Named<BaseKind>{"kinematic", BaseKind::kKinematic},
                                            Named<BaseKind>{"rmp", BaseKind::kRmp}};
+constexpr std::string_view to_string(BaseKind kind) {
+  return word_in(kBaseKindNames, kind);
+}
 
 enum class CanKind : std::uint8_t { kSim, kSocketCan };
 inline constexpr std::array kCanKindNames{Named<CanKind>{"sim", CanKind::kSim},
                                           Named<CanKind>{"socketcan", CanKind::kSocketCan}};
+constexpr std::string_view to_string(CanKind kind) {
+  return word_in(kCanKindNames, kind);
+}
 
 enum class SwitchesKind : std::uint8_t { kDummy, kSim, kGpiod };
 inline constexpr std::array kSwitchesKindNames{Named<SwitchesKind>{"dummy", SwitchesKind::kDummy},
                                                Named<SwitchesKind>{"sim", SwitchesKind::kSim},
                                                Named<SwitchesKind>{"gpiod", SwitchesKind::kGpiod}};
+constexpr std::string_view to_string(SwitchesKind kind) {
+  return word_in(kSwitchesKindNames, kind);
+}
 
 /// The pinhole of the camera that the images come from (frames: docs/frames.md), where no calibration says more.
 struct Pinhole {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "hal/simulation.h"
 #include "pipeline/behavior/follow.h"
@@ -25,6 +26,9 @@ enum class Pace : std::uint8_t {
 };
 inline constexpr std::array kPaceNames{Named<Pace>{"lock_step", Pace::kLockStep},
                                        Named<Pace>{"real_time", Pace::kRealTime}, Named<Pace>{"live", Pace::kLive}};
+constexpr std::string_view to_string(Pace pace) {
+  return word_in(kPaceNames, pace);
+}
 
 /// Where in the first image the object is that shall be followed. No width: it is not learned so.
 struct LearnRegion {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
@@ -77,6 +78,9 @@ enum class TaskKind : std::uint8_t {
 inline constexpr std::array kTaskKindNames{Named<TaskKind>{"follow", TaskKind::kFollow},
                                            Named<TaskKind>{"route", TaskKind::kRoute},
                                            Named<TaskKind>{"lamp", TaskKind::kLamp}};
+constexpr std::string_view to_string(TaskKind kind) {
+  return word_in(kTaskKindNames, kind);
+}
 
 struct Task {
   TaskKind kind = TaskKind::kFollow;

@@ -68,10 +68,9 @@ class BaseTest {
           kDegrees * odometry->velocity.left_radps, kDegrees * odometry->pitch_rad,
           hal::rmp::base_battery_v(report.power, parameters_.scales));
     }
-    constexpr const char* kModes[] = {"disabled", "tractor", "balance", "power down"};
-    const auto mode = static_cast<std::size_t>(report.power.mode);
-    observer_.print(
-        line + fmt::format("mode {}  fault: {}", mode < 4 ? kModes[mode] : "unknown", hal::to_string(drive_.fault())));
+    const auto mode = to_string(report.power.mode);
+    observer_.print(line +
+                    fmt::format("mode {}  fault: {}", mode.empty() ? "unknown" : mode, hal::to_string(drive_.fault())));
   }
 
   void print_counters() {

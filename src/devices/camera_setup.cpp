@@ -141,7 +141,7 @@ std::string setup_lines(const CameraSetup& setup) {
   const V4l2Parameters& fixed = setup.parameters;
   const V4l2Parameters defaults;
   std::string text = fmt::format("camera.kind = \"v4l2\"\ncamera.v4l2.device = \"{}\"\n", fixed.device);
-  if (fixed.format == hal::v4l2::StreamFormat::kMjpeg) text += "camera.v4l2.format = \"mjpeg\"\n";
+  if (fixed.format != defaults.format) text += fmt::format("camera.v4l2.format = \"{}\"\n", to_string(fixed.format));
   if (fixed.width_px != defaults.width_px) text += fmt::format("camera.v4l2.width_px = {}\n", fixed.width_px);
   if (fixed.height_px != defaults.height_px) text += fmt::format("camera.v4l2.height_px = {}\n", fixed.height_px);
   if (fixed.exposure_s > 0.0) text += fmt::format("camera.v4l2.exposure_s = {:.4f}\n", fixed.exposure_s);

@@ -24,6 +24,16 @@ std::uint32_t add_to_crc(std::uint32_t crc, Bytes bytes) {
 
 }  // namespace
 
+std::string_view to_string(McapCompression compression) {
+  switch (compression) {
+    case McapCompression::kNone:
+      return "";
+    case McapCompression::kLz4:
+      return "lz4";
+  }
+  return "";
+}
+
 McapChannel json_channel(std::string topic, std::string schema_name, std::string schema) {
   return {std::move(topic), "json", std::move(schema_name), "jsonschema", std::move(schema)};
 }
@@ -174,7 +184,7 @@ Result<McapFile> McapFile::create(const std::filesystem::path& path, std::vector
   state->options = options;
   state->summary.messages.resize(channels.size());
   state->summary.channels = std::move(channels);
-  state->summary.compression = options.compression == McapCompression::kLz4 ? "lz4" : "";
+  state->summary.compression = to_string(options.compression);
   state->add_header();
   if (auto written = state->state(); !written) return tl::unexpected(written.error());
   return McapFile(std::move(state));

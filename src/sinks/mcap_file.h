@@ -28,6 +28,8 @@ struct McapChannel {
 McapChannel json_channel(std::string topic, std::string schema_name, std::string schema);
 
 enum class McapCompression : std::uint8_t { kNone, kLz4 };
+/// \return the format's word: nothing for none.
+std::string_view to_string(McapCompression compression);
 
 struct McapOptions {
   McapCompression compression = McapCompression::kLz4;

@@ -39,9 +39,7 @@ class Audit {
   template <class Enum, class Names>
   void choice(std::string_view name, Enum value, const Names& names, std::string_view meaning) {
     check_key(name, meaning);
-    bool named = false;
-    for (const Named<Enum>& word : names) named = named || word.value == value;
-    if (!named) complain(name, "its default has no word");
+    if (word_in(names, value).empty()) complain(name, "its default has no word");
   }
 
   template <class Struct>

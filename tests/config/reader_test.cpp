@@ -1,5 +1,6 @@
 #include "platform/config/reader.h"
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -162,6 +163,12 @@ from_m = inf
       "robot.toml:6: stage.track.budget_us = 90000 is not in 100..33000 µs\n"
       "robot.toml:8: stage.decode.every_frames = 0 is not in 1..30\n"
       "robot.toml:10: area.from_m = inf is not in -10..10 m");
+}
+
+TEST(WordIn, IsTheTablesWordOrEmptyWhereItHasNone) {
+  EXPECT_EQ(word_in(kOverrunWords, Overrun::kSkip), "skip");
+  EXPECT_EQ(word_in(kOverrunWords, Overrun::kStopMotion), "stop_motion");
+  EXPECT_EQ(word_in(std::array{kOverrunWords[0]}, Overrun::kStopMotion), "");
 }
 
 TEST(Reader, ReadsAFile) {

@@ -50,8 +50,7 @@ class CameraContract : public testing::TestWithParam<CameraCase> {
     const MonoTime give_up_at = in(5.0);
     auto image = camera().next_image(give_up_at);
     if (!image) {
-      ADD_FAILURE() << "no image, CaptureFailure " << static_cast<int>(image.error()) << ": "
-                    << camera().last_problem();
+      ADD_FAILURE() << "no image: " << to_string(image.error()) << ": " << camera().last_problem();
       return std::nullopt;
     }
     EXPECT_LE(image->stamp(), give_up_at);
@@ -157,8 +156,7 @@ TEST_P(CameraContract, AllSlotsOnLeaseIsAFailureThatEndsWithTheLeases) {
     }
   }
   ASSERT_TRUE(failure);
-  EXPECT_TRUE(*failure == CaptureFailure::kNoSlot || *failure == CaptureFailure::kTimeout)
-      << static_cast<int>(*failure);
+  EXPECT_TRUE(*failure == CaptureFailure::kNoSlot || *failure == CaptureFailure::kTimeout) << to_string(*failure);
   EXPECT_GE(held.size(), 3U) << "two are held downstream while the next one is written";
   EXPECT_FALSE(camera().last_problem().empty());
   held.clear();

@@ -55,7 +55,7 @@ class DriveContract : public testing::TestWithParam<DriveCase> {
 
   Odometry odometry() {
     const auto heard = drive().odometry(now_);
-    EXPECT_TRUE(heard) << "DriveFailure " << static_cast<int>(heard ? DriveFailure{} : heard.error());
+    EXPECT_TRUE(heard) << (heard ? "" : to_string(heard.error()));
     if (!heard) return {};
     EXPECT_LE(heard->stamp, now_);
     EXPECT_GE(heard->stamp, now_ - seconds(0.1)) << "odometry is older than 100 ms";

@@ -24,6 +24,7 @@ struct Requirement {
   double bound = 0.0;
   Kind kind = Kind::kAtMost;
 };
+std::string_view to_string(Requirement::Kind kind);
 
 /// How a row of one run and the same row of another are joined into one.
 enum class Join : std::uint8_t {

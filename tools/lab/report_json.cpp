@@ -1,10 +1,13 @@
 #include <array>
 #include <charconv>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "platform/parameters.h"
 #include "tools/lab/report.h"
 
 namespace cgsr::lab {
@@ -37,15 +40,13 @@ json or_null(const std::optional<double>& value) {
   return value ? json(*value) : json();
 }
 
-constexpr std::array kKinds{std::pair(Requirement::Kind::kAtMost, "at_most"),
-                            std::pair(Requirement::Kind::kAtLeast, "at_least"),
-                            std::pair(Requirement::Kind::kIntervalWithin, "interval_within")};
+constexpr std::array kKinds{Named<Requirement::Kind>{"at_most", Requirement::Kind::kAtMost},
+                            Named<Requirement::Kind>{"at_least", Requirement::Kind::kAtLeast},
+                            Named<Requirement::Kind>{"interval_within", Requirement::Kind::kIntervalWithin}};
 
 json json_of(const Requirement& requirement) {
   json out = json::object();
-  for (const auto& [kind, name] : kKinds) {
-    if (kind == requirement.kind) out[name] = requirement.bound;
-  }
+  out[std::string(to_string(requirement.kind))] = requirement.bound;
   return out;
 }
 
@@ -98,7 +99,7 @@ Row row_of(const json& in) {
   }
   in.at("trials").get_to(row.trials);
   if (const auto& required = in.at("requirement"); !required.is_null()) {
-    for (const auto& [kind, name] : kKinds) {
+    for (const auto& [name, kind] : kKinds) {
       if (required.contains(name)) row.requirement = Requirement{required.at(name).get<double>(), kind};
     }
   }
@@ -128,6 +129,10 @@ Report report_of(const json& in) {
 }
 
 }  // namespace
+
+std::string_view to_string(Requirement::Kind kind) {
+  return word_in(kKinds, kind);
+}
 
 std::string_view to_string(Join join) {
   for (const auto& [value, name] : kJoins) {

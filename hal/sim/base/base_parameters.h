@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "hal/sim/base/wire.h"
 #include "platform/parameters.h"
@@ -13,6 +14,9 @@ enum class BaseMode : std::uint8_t { kDisabled = 0, kTractor = 1, kBalance = 2, 
 inline constexpr std::array kBaseModeNames = {Named<BaseMode>{"disabled", BaseMode::kDisabled},
                                               Named<BaseMode>{"tractor", BaseMode::kTractor},
                                               Named<BaseMode>{"balance", BaseMode::kBalance}};
+constexpr std::string_view to_string(BaseMode mode) {
+  return mode == BaseMode::kPowerDown ? "power_down" : word_in(kBaseModeNames, mode);  // no start is in that mode
+}
 
 /// How the simulated Segway moves. Invented where no figure is known: the bus protocol fixes what it says, not how it
 /// drives.

@@ -113,10 +113,7 @@ std::string materials_as_mtl(const Scene& scene, const std::string& comment) {
   for (const int i : used) {
     const Material& material = scene.materials[static_cast<std::size_t>(i)];
     text += fmt::format("newmtl {}\n", words[static_cast<std::size_t>(i)]);
-    for (const auto& name : kPatternNames) {
-      if (name.value == material.pattern && name.value != PatternKind::kPlain)
-        text += fmt::format("# pattern {}\n", name.name);
-    }
+    if (material.pattern != PatternKind::kPlain) text += fmt::format("# pattern {}\n", to_string(material.pattern));
     // What mesh_file.cpp reads back: 0.08 is the reflectance at normal incidence of Ks = 1.
     text += fmt::format("Kd {}\nKs {:.6f} {:.6f} {:.6f}\nPr {:.6f}\n", encoded(mean_albedo(material)),
                         material.specular / 0.08F, material.specular / 0.08F, material.specular / 0.08F,

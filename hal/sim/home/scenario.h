@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/sim/base/base_parameters.h"
@@ -43,6 +44,9 @@ inline constexpr Named<CameraTrouble> kCameraTroubleNames[] = {{"dropped", Camer
                                                                {"corrupt", CameraTrouble::kCorrupt},
                                                                {"late", CameraTrouble::kLate},
                                                                {"gone", CameraTrouble::kGone}};
+constexpr std::string_view to_string(CameraTrouble trouble) {
+  return word_in(kCameraTroubleNames, trouble);
+}
 
 /// [[camera_event]]
 struct CameraEventSpec {
@@ -66,6 +70,9 @@ inline constexpr Named<BusTrouble> kBusTroubleNames[] = {{"base_silent", BusTrou
                                                          {"bus_off", BusTrouble::kBusOff},
                                                          {"gone", BusTrouble::kGone},
                                                          {"second_commander", BusTrouble::kSecondCommander}};
+constexpr std::string_view to_string(BusTrouble trouble) {
+  return word_in(kBusTroubleNames, trouble);
+}
 
 /// [[bus_event]]
 struct BusEventSpec {
@@ -89,6 +96,9 @@ inline constexpr Named<BaseTrouble> kBaseTroubleNames[] = {{"emergency_stop", Ba
                                                            {"motors_off", BaseTrouble::kMotorsOff},
                                                            {"power_off", BaseTrouble::kPowerOff},
                                                            {"status_bits", BaseTrouble::kStatusBits}};
+constexpr std::string_view to_string(BaseTrouble trouble) {
+  return word_in(kBaseTroubleNames, trouble);
+}
 
 /// [[base_event]]
 struct BaseEventSpec {
@@ -123,6 +133,9 @@ struct LineSpec {
 inline constexpr Named<SwitchHappening> kSwitchHappeningNames[] = {{"pressed", SwitchHappening::kPressed},
                                                                    {"no_answer", SwitchHappening::kNoAnswer},
                                                                    {"stuck", SwitchHappening::kStuck}};
+constexpr std::string_view to_string(SwitchHappening happening) {
+  return word_in(kSwitchHappeningNames, happening);
+}
 
 /// [[line_event]]
 struct LineEventSpec {

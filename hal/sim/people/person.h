@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/sim/scene/scene.h"
@@ -15,6 +16,9 @@ inline constexpr int kIdentities = 8;
 enum class ShirtKind : std::uint8_t { kPlain, kStriped, kTwoColoured };
 inline constexpr Named<ShirtKind> kShirtNames[] = {
     {"plain", ShirtKind::kPlain}, {"striped", ShirtKind::kStriped}, {"two_coloured", ShirtKind::kTwoColoured}};
+constexpr std::string_view to_string(ShirtKind kind) {
+  return word_in(kShirtNames, kind);
+}
 
 /// What a person wears. Colours are linear.
 struct Outfit {

@@ -40,6 +40,20 @@ double turned(double from_rad, double to_rad, double most_rad) {
 
 }  // namespace
 
+std::string_view to_string(FigureKind kind) {
+  switch (kind) {
+    case FigureKind::kBall:
+      return "ball";
+    case FigureKind::kObject:
+      return "object";
+    case FigureKind::kPerson:
+      return "person";
+    case FigureKind::kRobot:
+      return "robot";
+  }
+  return "";
+}
+
 std::vector<Pose> pose_joints(const Figure& figure, const Pose& X_WF, double time_s, double walked_m,
                               double speed_mps) {
   const HeadKey head = head_at(figure.head, time_s);

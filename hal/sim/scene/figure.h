@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,6 +34,7 @@ struct Joint {
 };
 
 enum class FigureKind : std::uint8_t { kBall, kObject, kPerson, kRobot };
+std::string_view to_string(FigureKind kind);
 
 /// From `at_s` on the head looks there, reached by a steady turn of at most 2 rad/s.
 struct HeadKey {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -33,6 +34,9 @@ inline constexpr Named<PatternKind> kPatternNames[] = {
     {"tape", PatternKind::kTape},     {"print", PatternKind::kPrint},     {"wood", PatternKind::kWood},
     {"fabric", PatternKind::kFabric},
 };
+constexpr std::string_view to_string(PatternKind kind) {
+  return word_in(kPatternNames, kind);
+}
 
 /// A square-pixel image with its mip levels, linear light, four channels of which three are used. u to the right, v down, both wrap.
 struct Texture {

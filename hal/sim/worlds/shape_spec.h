@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "hal/sim/scene/material.h"
 #include "platform/parameters.h"
@@ -19,6 +20,9 @@ inline constexpr Range<double> kTime_s{0.0, 86400.0};
 
 enum class ColorCode : std::uint8_t { kSrgb, kLinear };
 inline constexpr Named<ColorCode> kColorCodeNames[] = {{"srgb", ColorCode::kSrgb}, {"linear", ColorCode::kLinear}};
+constexpr std::string_view to_string(ColorCode code) {
+  return word_in(kColorCodeNames, code);
+}
 
 /// [[material]]
 struct MaterialSpec {
@@ -85,6 +89,9 @@ inline constexpr Named<ShapeKind> kShapeNames[] = {
     {"sofa", ShapeKind::kSofa},   {"bed", ShapeKind::kBed},
     {"plant", ShapeKind::kPlant}, {"picture", ShapeKind::kPicture},
 };
+constexpr std::string_view to_string(ShapeKind kind) {
+  return word_in(kShapeNames, kind);
+}
 
 /// [[shape]]: everything that stands still (and, inside [[object]], what moves as one). `position_m` is the middle of its foot, `size_m`
 /// the box around it before it is turned: x forward (where furniture faces), y left, z up.

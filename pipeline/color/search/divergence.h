@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "platform/parameters.h"
 
@@ -21,6 +22,9 @@ inline constexpr std::array kDivergenceNames{
     Named<Divergence>{"hellinger", Divergence::kHellinger},
     Named<Divergence>{"intersection", Divergence::kIntersection},
 };
+constexpr std::string_view to_string(Divergence divergence) {
+  return word_in(kDivergenceNames, divergence);
+}
 
 /// \return one bin's contribution to the similarity; the sum over the bins of two equal histograms is 1. \param p, q  in [0, 1].
 double similarity_term(Divergence divergence, double p, double q);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "pipeline/color/search/divergence.h"
 #include "platform/box.h"
@@ -18,6 +19,9 @@ inline constexpr std::array kBinWeightsNames{
     Named<BinWeights>{"plain", BinWeights::kPlain},
     Named<BinWeights>{"surroundings", BinWeights::kSurroundings},
 };
+constexpr std::string_view to_string(BinWeights weights) {
+  return word_in(kBinWeightsNames, weights);
+}
 
 /// Which windows Alg. 3.2 compares (line 6), and how (line 7).
 struct SearchParameters {
@@ -94,5 +98,16 @@ enum class SearchFailure : std::uint8_t {
   kBadRequest,  ///< a size, candidate count, overlap or region that is not finite or out of range.
   kTooLarge,    ///< the image is larger than the search was made for.
 };
+constexpr std::string_view to_string(SearchFailure failure) {
+  switch (failure) {
+    case SearchFailure::kNoRoom:
+      return "no room";
+    case SearchFailure::kBadRequest:
+      return "bad request";
+    case SearchFailure::kTooLarge:
+      return "image too large";
+  }
+  return "";
+}
 
 }  // namespace cgsr::color

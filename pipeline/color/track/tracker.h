@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <string_view>
 
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
@@ -27,6 +28,9 @@ inline constexpr std::array kTrackModeNames{
     Named<TrackMode>{"plain", TrackMode::kPlain},
     Named<TrackMode>{"full", TrackMode::kFull},
 };
+constexpr std::string_view to_string(TrackMode mode) {
+  return word_in(kTrackModeNames, mode);
+}
 
 /// When the local tracker is doubted, and what makes a place elsewhere in the image more credible. Scores are compared with their running
 /// mean while the object was surely seen, divergences with theirs.

@@ -10,7 +10,7 @@
 namespace cgsr::lab {
 
 bool TrackingOptions::has(BenchmarkPart part) const {
-  return parts.empty() || std::ranges::count(parts, kBenchmarkParts[static_cast<std::size_t>(part)]) > 0;
+  return parts.empty() || std::ranges::count(parts, to_string(part)) > 0;
 }
 
 bool TrackingOptions::runs(std::string_view tracker) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -18,6 +19,9 @@ namespace cgsr::lab {
 enum class BenchmarkPart : std::uint8_t { kOnePass, kSpatial, kTemporal, kHalfPixel, kRelit, kAbsent, kCost };
 inline constexpr std::array<std::string_view, 7> kBenchmarkParts{"one-pass", "spatial", "temporal", "half-pixel",
                                                                  "relit",    "absent",  "cost"};
+constexpr std::string_view to_string(BenchmarkPart part) {
+  return kBenchmarkParts[static_cast<std::size_t>(part)];
+}
 
 /// What `cgsr reproduce tracking-benchmark` was asked for besides what every table takes.
 struct TrackingOptions {
