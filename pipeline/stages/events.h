@@ -48,7 +48,7 @@ struct Event {
   };
 };
 
-/// The events of one output in one image, in order; those that find no room are counted.
+/// The events of one output in one image, in order; those that find no room are counted, and for_each_event() tells of them.
 class Events {
  public:
   static constexpr std::size_t kMaxEvents = 4;

@@ -41,14 +41,17 @@ void for_each_output(Frame& frame, Read read) {
   read("shade", "The state of the shadow masks.", frame.shade);
 }
 
-/// Shows every event of this image to a reader, in the order of the outputs.
+/// Shows every event of this image to a reader, in the order of the outputs. One more event says how many of an output found no room.
 /// \param read  called with an Event.
 template <class Read>
 void for_each_event(const FrameResult& frame, Read read) {
-  for_each_output(frame, [&read](std::string_view, std::string_view, const auto& output) {
+  for_each_output(frame, [&read](std::string_view name, std::string_view, const auto& output) {
     if constexpr (requires { output.value.events; }) {
       if (!output.fresh()) return;
-      for (const Event& event : output.value.events) read(event);
+      const Events& events = output.value.events;
+      for (const Event& event : events) read(event);
+      if (events.lost() == 0) return;
+      read(Event{name, "events lost", {}, {{{"count", static_cast<double>(events.lost()), ""}}}, 1});
     }
   });
 }

@@ -85,6 +85,27 @@ TEST(LogSink, WritesTheEventsOfThisImageAlone) {
   EXPECT_THAT(log.text(), testing::Not(HasSubstr("image 8")));
 }
 
+// A task may have more to say than there is room for: every reader of events hears that some are missing, of this image alone.
+TEST(LogSink, TellsOfEventsWithoutRoom) {
+  const CapturedLog log;
+  LogSink sink;
+  const MotionStatus motion;
+  stages::FrameResult frame;
+  frame.decision.age = Duration::zero();
+  stages::Events& events = frame.decision.value.events;
+  for (std::size_t i = 0; i < stages::Events::kMaxEvents; ++i) events.add({"task", "state", {}});
+  ASSERT_TRUE(sink.on_image({frame, record_of(7), motion, nullptr}));
+  EXPECT_THAT(log.text(), testing::Not(HasSubstr("events lost"))) << "all had room";
+
+  for (int i = 0; i < 2; ++i) events.add({"task", "state", {}});
+  ASSERT_TRUE(sink.on_image({frame, record_of(8), motion, nullptr}));
+  EXPECT_THAT(log.text(), HasSubstr("image 8 (0.8 s): decision: events lost (count 2)"));
+
+  frame.decision.age = seconds(0.033);
+  ASSERT_TRUE(sink.on_image({frame, record_of(9), motion, nullptr}));
+  EXPECT_THAT(log.text(), testing::Not(HasSubstr("image 9")));
+}
+
 TEST(StatisticsSink, KeepsEventsAndCountsWhatFieldsWere) {
   StatisticsSink sink(schedule());
   const MotionStatus motion;
