@@ -12,6 +12,7 @@ const FrameResult& VisionLoop::on_image(const ImageLease& image, const FrameInpu
   frame_.shade = run<ShadeStage>(frame_.pose, frame_.lamp);                            // 5.2
   frame_.matches = run<SearchStage>(frame_.view, frame_.objects);                      // chapter 3, Alg. 3.2
   frame_.objects = run<TrackStage>(pixels, frame_.view, frame_.matches, frame_.shade, inputs.requests);  // and 5.3
+  frame_.people = run<IdentifyStage>(pixels, inputs.requests);                                           // chapter 6
   frame_.decision = run<DecideStage>(image, frame_);  // motion goal, and requests for the next image
   return frame_;
 }

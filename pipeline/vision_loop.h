@@ -10,7 +10,7 @@ namespace cgsr {
 /// The stages of Figure 5.1, in the order of the schedule's rows.
 using VisionStageList =
     stages::StageList<stages::DecodeStage, stages::LocalizeStage, stages::ProbesStage, stages::ShadeStage,
-                      stages::SearchStage, stages::TrackStage, stages::DecideStage>;
+                      stages::SearchStage, stages::TrackStage, stages::IdentifyStage, stages::DecideStage>;
 
 /// The section [stage] of a robot's file.
 using VisionStages = VisionStageList::Rows;

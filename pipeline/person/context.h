@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+
+#include "pipeline/imaging/color_code.h"
 #include "pipeline/person/classifier.h"
 #include "platform/parameters.h"
 
@@ -37,6 +40,9 @@ struct ContextParameters {
                  "The share of its confidence that a grey classifier loses in a blurred region.");
   }
 };
+
+/// \return how a region was taken, by its colours (region_colors()). How blurred it is, colours do not say: 0.
+ImageContext context_of(std::span<const imaging::Rgb> colors);
 
 /// \return the factor in [0, 1] by which a classifier of this kind is to be believed less: the product of 1 - share * loss over the disturbances.
 double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters = {});

@@ -5,6 +5,7 @@
 
 #include "pipeline/person/classifier.h"
 #include "pipeline/person/face/face_descriptor.h"
+#include "pipeline/person/face/face_gallery.h"
 
 namespace cgsr::person {
 
@@ -20,5 +21,8 @@ struct Identities {
   Label next_number = 1;
   std::vector<Identity> people;
 };
+
+/// \return the views of all of them, by number.
+FaceGallery gallery_of(const Identities& identities, const FaceMatchParameters& parameters = {});
 
 }  // namespace cgsr::person

@@ -3,6 +3,7 @@
 #include "pipeline/runtime/aged.h"
 #include "pipeline/stages/decision.h"
 #include "pipeline/stages/decode_stage.h"
+#include "pipeline/stages/identify_stage.h"
 #include "pipeline/stages/localize_stage.h"
 #include "pipeline/stages/probes_stage.h"
 #include "pipeline/stages/search_stage.h"
@@ -26,6 +27,7 @@ struct FrameResult {
   runtime::Aged<ShadowMasks> shade;
   runtime::Aged<color::SearchResult> matches;
   runtime::Aged<TrackedObjects> objects;
+  runtime::Aged<IdentifiedPeople> people;
   runtime::Aged<Decision> decision;
 };
 
@@ -39,6 +41,7 @@ void for_each_output(Frame& frame, Read read) {
   read("pose", "The estimated pose.", frame.pose);
   read("lamp", "What the probes say of the lamp.", frame.lamp);
   read("shade", "The state of the shadow masks.", frame.shade);
+  read("people", "Who is in view.", frame.people);
 }
 
 /// Shows every event of this image to a reader, in the order of the outputs. One more event says how many of an output found no room.

@@ -5,6 +5,15 @@
 namespace cgsr::stages {
 namespace {
 
+behavior::FollowParameters by_faces(behavior::FollowParameters follow) {
+  follow.learned_distance_m = 1.0;
+  return follow;
+}
+
+behavior::LearnedSize face_at_a_metre(double face_width_m, double fx_px) {
+  return {face_width_m * fx_px, face_width_m * fx_px};
+}
+
 behavior::PlanarPose pose_to_drive_by(const runtime::Aged<PoseEstimate>& pose) {
   behavior::PlanarPose here = pose.value.robot;
   here.known = here.known && pose.within(kMaxPoseAge) != nullptr;
@@ -43,6 +52,44 @@ Decision FollowTask::decide(const FrameResult& frame, const ImageView& image, Du
       {object.found, object.box, frame.objects.age, image.width_px, image.height_px, camera_.fx_px, camera_.cx_px},
       elapsed);
   return {follow.goal, follow.halt, behavior::to_string(follow.state), behavior::to_string(follow.reason), {}};
+}
+
+FollowPersonTask::FollowPersonTask(const behavior::FollowPersonParameters& person,
+                                   const behavior::FollowParameters& follow, const behavior::DriveLimits& limits,
+                                   const geometry::Camera& camera)
+    : person_(person.number),
+      follow_(by_faces(follow), face_at_a_metre(person.face_width_m, camera.fx_px), limits),
+      camera_(camera) {}
+
+Requests FollowPersonTask::first_requests() const {
+  Requests requests;
+  if (person_ > person::kStranger) requests.person = person_;
+  return requests;
+}
+
+// As large as the face would be, where the person was seen: one size for both characteristics.
+behavior::Sighting FollowPersonTask::sighting_of(const person::PersonSighting& who, const ImageView& image) const {
+  const double x = who.box.x + who.box.width / 2;
+  const double y = who.box.y + who.box.height / 2;
+  const Box face{x - who.face_px / 2, y - who.face_px / 2, who.face_px, who.face_px};
+  return {true, face, {}, image.width_px, image.height_px, camera_.fx_px, camera_.cx_px};
+}
+
+// Where the person was a moment ago is where he is, until somebody else stands there: faces are looked for in every other image.
+Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
+  const IdentifiedPeople* const people = frame.people.within(Duration::zero());
+  const person::PersonSighting who = people != nullptr ? people->person : person::PersonSighting{};
+  const bool enrolled = IdentifiedPeople::state_of(who) == PersonState::kEnrolled;
+  if (person_ == person::kStranger && enrolled) person_ = *who.person;
+  if (last_) last_->age += elapsed;
+  if (who.person) last_.reset();
+  if (enrolled && who.person == person_) last_ = sighting_of(who, image);
+  const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
+  std::string_view reason = behavior::to_string(follow.reason);
+  if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";
+  Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
+  decision.requests = first_requests();
+  return decision;
 }
 
 Decision RouteTask::decide(const FrameResult& frame, const ImageView& /*image*/, Duration elapsed) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "pipeline/behavior/follow.h"
+#include "pipeline/behavior/follow_person_parameters.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/geometry/camera.h"
@@ -22,6 +23,25 @@ class FollowTask final : public Task {
 
  private:
   behavior::Follow follow_;
+  geometry::Camera camera_;
+};
+
+/// Follows a person at a distance (6.4): by the face while it is seen, else by the shirt. A stranger is not followed, whatever he wears.
+class FollowPersonTask final : public Task {
+ public:
+  /// \param person  the number in the identities file; 0: whoever is enrolled and comes first.
+  /// \param camera  of the images that come.
+  FollowPersonTask(const behavior::FollowPersonParameters& person, const behavior::FollowParameters& follow,
+                   const behavior::DriveLimits& limits, const geometry::Camera& camera);
+  [[nodiscard]] Requests first_requests() const override;
+  Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
+
+ private:
+  [[nodiscard]] behavior::Sighting sighting_of(const person::PersonSighting& who, const ImageView& image) const;
+
+  person::Label person_;  // 0: nobody yet
+  behavior::Follow follow_;
+  std::optional<behavior::Sighting> last_;  // of the person, with its age
   geometry::Camera camera_;
 };
 

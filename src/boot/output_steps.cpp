@@ -15,7 +15,9 @@ namespace cgsr::boot {
 namespace {
 
 double set_distance_m(const config::Robot& config) {
-  return config.task.kind == config::TaskKind::kFollow ? config.follow.distance_m : 0.0;
+  const bool keeps_distance =
+      config.task.kind == config::TaskKind::kFollow || config.task.kind == config::TaskKind::kPerson;
+  return keeps_distance ? config.follow.distance_m : 0.0;
 }
 
 /// The home from above beside the film; null: nobody knows it.
@@ -56,7 +58,10 @@ Result<void> open_outputs(RobotState& state) {
     outputs.sinks.add(std::move(*trace));
   }
   if (!options.recording.empty()) {
-    auto recording = sinks::RecordingSink::create(options.recording);
+    // Pictures of people are personal data.
+    const bool images = options.record_images || !state.setup.config.person.enabled();
+    if (!images) state.report.notes.push_back("the recording leaves the images out: --record-images keeps them");
+    auto recording = sinks::RecordingSink::create(options.recording, images);
     if (!recording) return tl::unexpected(recording.error());
     outputs.sinks.add(std::move(*recording));
   }

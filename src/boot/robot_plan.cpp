@@ -40,7 +40,9 @@ void add_robot_steps(BootPlan& plan, RobotState& state) {
   load("object", {"optics", "model"}, make_object);
   load("localization", {"optics", "map"}, make_localization);
   load("light", {"optics", "localization"}, make_light);
-  load("task", {"localization"}, make_task);
+  load("people", {}, load_people);
+  load("identification", {"people"}, make_people);
+  load("task", {"localization", "identification"}, make_task);
   load("loop", {"camera"}, make_loop);
   add("outputs", {"loop"}, open_outputs);
   add("base", home_if(config.simulated_base()), start_base, [&state] { state.devices.base->stop(); });

@@ -21,6 +21,8 @@ Result<void> fit_calibration(RobotState& state);
 Result<void> make_object(RobotState& state);
 Result<void> make_localization(RobotState& state);
 Result<void> make_light(RobotState& state);
+Result<void> load_people(RobotState& state);
+Result<void> make_people(RobotState& state);
 Result<void> make_task(RobotState& state);
 Result<void> make_loop(RobotState& state);
 Result<void> open_outputs(RobotState& state);

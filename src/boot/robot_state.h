@@ -33,8 +33,9 @@ struct RunOptions {
   std::string video;
   std::string trace;
   std::string recording;
-  std::string status;                       ///< rewritten every second for `cgsr top`.
-  bool profile = false;                     ///< the summary has a key "profile".
+  bool record_images = false;  ///< also where people are identified, whose pictures a recording leaves out otherwise.
+  std::string status;          ///< rewritten every second for `cgsr top`.
+  bool profile = false;        ///< the summary has a key "profile".
   sinks::FrameObserver observer = nullptr;  ///< for the lab; of a simulated robot in lock-step only.
   StopRequest* wait_for_devices =
       nullptr;  ///< a late device of this computer is waited for until it is requested; null: refused.
@@ -75,9 +76,11 @@ struct Calibration {
 
 /// The loop of the vision thread and what it is fed with.
 struct Vision {
-  std::shared_ptr<const world::Map> map;   ///< null: none.
-  std::optional<color::ColorModel> model;  ///< of a file; none: it is learned from the first image, or not needed.
-  VisionParts parts;                       ///< while booting; afterwards they are the loop's.
+  std::shared_ptr<const world::Map> map;      ///< null: none.
+  std::optional<color::ColorModel> model;     ///< of a file; none: it is learned from the first image, or not needed.
+  std::optional<person::FaceGallery> people;  ///< who is enrolled; none: nobody is identified.
+  std::optional<person::FaceDetector> face_detector;  ///< while booting; afterwards it is the stage's.
+  VisionParts parts;                                  ///< while booting; afterwards they are the loop's.
   std::optional<behavior::LearnedSize> learned;
   std::unique_ptr<runtime::StageRunner> runner;
   std::unique_ptr<VisionLoop> loop;

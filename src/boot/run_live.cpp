@@ -11,23 +11,27 @@
 #include "src/boot/run_loops.h"
 #include "src/tasks/capture_task.h"
 #include "src/tasks/motion_task.h"
+#include "src/tasks/recognition_task.h"
 
 namespace cgsr::boot {
 namespace {
 
 constexpr Duration kSupervisorPeriod = seconds(0.1);
 constexpr Duration kHousekeepingPeriod = seconds(0.01);
+constexpr Duration kRecognitionPeriod = seconds(0.1);  // in which it looks whether it is to stop
 constexpr Duration kCameraMessageGap = seconds(5.0);
 
 /// The bodies of the threads of docs/threads.md: each a task and the wait between its steps.
 class LiveLoops {
  public:
   LiveLoops(tasks::CaptureTask& capture, tasks::VisionTask& vision, tasks::MotionTask& motion,
-            tasks::SwitchTask& switches, tasks::HousekeepingTask& housekeeping, RobotState& state, StopRequest& stop)
+            tasks::SwitchTask& switches, tasks::RecognitionTask* recognition, tasks::HousekeepingTask& housekeeping,
+            RobotState& state, StopRequest& stop)
       : capture_(capture),
         vision_(vision),
         motion_(motion),
         switches_(switches),
+        recognition_(recognition),
         housekeeping_(housekeeping),
         devices_(state.devices),
         clock_(state.clocks.real),
@@ -81,6 +85,13 @@ class LiveLoops {
     }
   }
 
+  void recognition() {
+    while (!stop_.requested()) {
+      static_cast<void>(links_.face_question_came.wait_until(clock_.now() + kRecognitionPeriod));
+      recognition_->step();
+    }
+  }
+
   void housekeeping() {
     Periodic round(clock_, kHousekeepingPeriod);
     while (!stop_.requested()) {
@@ -88,6 +99,8 @@ class LiveLoops {
       housekeeping_.step(clock_.now());
     }
   }
+
+  [[nodiscard]] bool identifies() const { return recognition_ != nullptr; }
 
   Heartbeats heartbeats;
 
@@ -102,6 +115,7 @@ class LiveLoops {
   tasks::VisionTask& vision_;
   tasks::MotionTask& motion_;
   tasks::SwitchTask& switches_;
+  tasks::RecognitionTask* recognition_;  // null: nobody is to be identified
   tasks::HousekeepingTask& housekeeping_;
   Devices& devices_;
   RealClock& clock_;
@@ -119,6 +133,11 @@ Result<void> start_threads(ThreadTable& threads, LiveLoops& loops, tasks::Links&
   // Consumers before producers: whoever gets work is there to take it.
   if (auto done = start(runtime::kMotionThread, [&loops] { loops.motion(); }); !done) return done;
   if (auto done = start(runtime::kHousekeepingThread, [&loops] { loops.housekeeping(); }); !done) return done;
+  if (loops.identifies()) {
+    auto done = start(
+        runtime::kRecognitionThread, [&loops] { loops.recognition(); }, &links.face_question_came);
+    if (!done) return done;
+  }
   if (auto done = start(runtime::kSwitchThread, [&loops] { loops.switches(); }); !done) return done;
   if (auto done = start(
           runtime::kVisionThread, [&loops] { loops.vision(); }, &links.image_came);
@@ -160,7 +179,9 @@ Result<void> run_live(RobotState& state, StopRequest& stop) {
   tasks::MotionTask motion(*state.devices.base, stop, Duration::zero(), state.setup.options.arm, state.links);
   tasks::SwitchTask switches(*state.devices.switches, state.lines(), clock, state.links);
   tasks::HousekeepingTask housekeeping(state.links, state.outputs.sinks);
-  LiveLoops loops(capture, vision, motion, switches, housekeeping, state, stop);
+  std::optional<tasks::RecognitionTask> recognition;
+  if (state.vision.people) recognition.emplace(std::move(*state.vision.people), state.links);
+  LiveLoops loops(capture, vision, motion, switches, recognition ? &*recognition : nullptr, housekeeping, state, stop);
 
   ThreadTable threads(stop);
   if (auto started = start_threads(threads, loops, state.links); !started) return started;

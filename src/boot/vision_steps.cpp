@@ -112,6 +112,10 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
     return std::make_unique<stages::FollowTask>(behavior::Follow(config.follow, state.vision.learned, config.motion),
                                                 optics_of(state));
   }
+  if (config.task.kind == config::TaskKind::kPerson) {
+    return std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
+                                                      optics_of(state));
+  }
   auto places = behavior::parse_places(config.task.route.places_m);
   if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
   return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places), config.motion));
@@ -122,7 +126,7 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
 /// The object's model, where the task needs one and its file is named.
 Result<void> load_model(RobotState& state) {
   const config::Run& run = state.setup.config.run;
-  if (state.setup.config.task.kind == config::TaskKind::kRoute || (run.model.empty() && !run.learn.empty())) return {};
+  if (!state.setup.config.needs_object() || (run.model.empty() && !run.learn.empty())) return {};
   if (run.model.empty()) {
     return fail(
         "neither run.model nor run.learn names an object: give --model FILE (cgsr learn makes one), or a region of the "
@@ -181,7 +185,7 @@ Result<void> fit_calibration(RobotState& state) {
 
 Result<void> make_object(RobotState& state) {
   const hal::CameraMode& mode = state.devices.mode;
-  if (state.setup.config.task.kind == config::TaskKind::kRoute) {
+  if (!state.setup.config.needs_object()) {
     state.vision.parts.make<stages::DecodeStage>(stages::DecodeStage::Setup{mode.width_px, mode.height_px, {}});
     return {};
   }

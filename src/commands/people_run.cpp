@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "pipeline/person/face/face_descriptor.h"
+#include "src/input/face_detector_file.h"
 #include "src/input/identities_file.h"
-#include "src/input/small_file.h"
 #include "src/output/output_claims.h"
 #include "src/output/text_file.h"
 
@@ -21,7 +21,6 @@ using person::Identity;
 using person::Label;
 
 constexpr const char* kColumns = "frame,identity,source,confidence,x,y,width,height";
-constexpr std::size_t kMaxCascadeBytes = std::size_t{16} << 20U;
 constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
 
 double distance(const FaceDescriptor& face, const FaceView& view) {
@@ -65,14 +64,6 @@ Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enr
   return faces;
 }
 
-person::FaceGallery gallery_of(const person::Identities& identities) {
-  person::FaceGallery gallery;
-  for (const Identity& one : identities.people) {
-    for (const FaceView& view : one.views) gallery.enroll(one.number, view);
-  }
-  return gallery;
-}
-
 std::string person_name(const person::Identities& identities, Label number) {
   const auto one = std::ranges::find(identities.people, number, &Identity::number);
   return one == identities.people.end() ? "a stranger" : one->name;
@@ -97,13 +88,9 @@ Result<Identity*> person_to_enroll(person::Identities& identities, const PeopleO
 }  // namespace
 
 Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
-  const auto text = read_small_file(options.cascade, kMaxCascadeBytes, "a face cascade");
-  if (!text) return fail(text.error().message + "; Debian's opencv-data has one: --cascade names another place");
   person::FaceDetectorParameters parameters;
   parameters.min_face_px = options.min_face_px;
-  auto detector = person::FaceDetector::from_cascade(*text, parameters);
-  if (!detector) return fail(fmt::format("{}: {}", options.cascade, detector.error().message));
-  return detector;
+  return read_face_detector(options.cascade, parameters);
 }
 
 Result<Enrolled> enroll(const PeopleOptions& options) {

@@ -36,7 +36,7 @@ Result<void> apply(const RunCommand& options, config::Robot& config) {
   if (!options.input.empty()) config.camera.replay.path = options.input;
   if (!options.model.empty()) config.run.model = options.model;
   if (options.seed >= 0) config.sim.seed = options.seed;
-  if (config.task.kind != config::TaskKind::kRoute && config.run.model.empty() && config.run.learn.empty()) {
+  if (config.needs_object() && config.run.model.empty() && config.run.learn.empty()) {
     return fail(
         fmt::format("{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a "
                     "model, or run.learn "
@@ -125,6 +125,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--trace", options->run.trace, "write a trace of stages and control cycles (ui.perfetto.dev)");
   command->add_option("--recording", options->run.recording,
                       "write a recording in MCAP (Foxglove): outputs and images");
+  command->add_flag("--record-images", options->run.record_images,
+                    "keep the images in the recording although people are identified in them");
   command->add_option("--status", options->run.status, "rewrite this file every second, for cgsr top");
   command->add_option("--json", options->json, "write the summary for machines");
   add_force_option(*command, options->force);

@@ -15,6 +15,7 @@
 #include "src/config/color.h"
 #include "src/config/devices.h"
 #include "src/config/light.h"
+#include "src/config/person.h"
 #include "src/config/robot_localization.h"
 
 namespace cgsr::config {
@@ -84,6 +85,7 @@ struct Robot {
   illumination::ProbesParameters probes;
   illumination::LampParameters lamp;
   stages::ShadeStageParameters shade;
+  Person person;
   Task task;
   behavior::FollowParameters follow;
   MotionParameters motion;
@@ -110,9 +112,16 @@ struct Robot {
     visit.section("probes", self.probes, "The probe board and how it is observed (Alg. 5.1)");
     visit.section("lamp", self.lamp, "Prior knowledge of lamps, and the fusion of observations (Eq. 5.1, 5.2)");
     visit.section("shade", self.shade, "The shadow masks of the lamp (5.2)");
+    visit.section("person", self.person, "Who is in view (chapter 6)");
     visit.section("task", self.task, "The task of the robot");
     visit.section("follow", self.follow, "Following an object: distance, speed and the reaction to a loss");
     visit.section("motion", self.motion, "The limits of wheel commands and the conditions for a stop");
+  }
+
+  /// The task is about an object, or one is named all the same.
+  [[nodiscard]] bool needs_object() const {
+    if (task.kind == TaskKind::kRoute) return false;
+    return task.kind != TaskKind::kPerson || !run.model.empty() || !run.learn.empty();
   }
 
   [[nodiscard]] bool simulated_camera() const { return camera.kind == CameraKind::kSim; }
@@ -130,7 +139,10 @@ struct Robot {
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
-    if (task.kind != TaskKind::kFollow && localization.map.empty()) {
+    if (task.kind == TaskKind::kPerson && !person.enabled()) {
+      return "task.kind = \"person\" needs person.identities: the file in which cgsr people enroll keeps who is known";
+    }
+    if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
       return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "
              "one";
     }

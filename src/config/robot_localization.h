@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "pipeline/behavior/follow_person_parameters.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/calibration/marker.h"
@@ -74,10 +75,11 @@ enum class TaskKind : std::uint8_t {
   kFollow,  ///< keep at a distance from an object.
   kRoute,   ///< drive from place to place.
   kLamp,    ///< Algorithm 5.2: find the lamp, back off, track with masks.
+  kPerson,  ///< keep at a distance from a person who is enrolled (6.4).
 };
-inline constexpr std::array kTaskKindNames{Named<TaskKind>{"follow", TaskKind::kFollow},
-                                           Named<TaskKind>{"route", TaskKind::kRoute},
-                                           Named<TaskKind>{"lamp", TaskKind::kLamp}};
+inline constexpr std::array kTaskKindNames{
+    Named<TaskKind>{"follow", TaskKind::kFollow}, Named<TaskKind>{"route", TaskKind::kRoute},
+    Named<TaskKind>{"lamp", TaskKind::kLamp}, Named<TaskKind>{"person", TaskKind::kPerson}};
 constexpr std::string_view to_string(TaskKind kind) {
   return word_in(kTaskKindNames, kind);
 }
@@ -86,14 +88,17 @@ struct Task {
   TaskKind kind = TaskKind::kFollow;
   behavior::RouteParameters route;
   behavior::SeekLampParameters lamp;
+  behavior::FollowPersonParameters person;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.choice("kind", self.kind, kTaskKindNames,
-                 "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
-                 "Algorithm 5.2; the last two need a map.");
+    visit.choice(
+        "kind", self.kind, kTaskKindNames,
+        "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
+        "Algorithm 5.2; these two need a map. The task person keeps at a distance from somebody who is enrolled.");
     visit.section("route", self.route, "The places and the speed of a route");
     visit.section("lamp", self.lamp, "Exploring, locating the lamp, backing off and tracking (Alg. 5.2)");
+    visit.section("person", self.person, "Whom the robot follows (6.4)");
   }
 };
 

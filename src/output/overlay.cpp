@@ -20,6 +20,8 @@ const cv::Scalar kFound(80, 230, 80);
 const cv::Scalar kTruth(230, 150, 60);
 const cv::Scalar kShade(220, 90, 40);
 const cv::Scalar kNothing(60, 60, 60);
+const cv::Scalar kPerson(80, 220, 240);
+const cv::Scalar kFace(200, 200, 200);
 
 /// A light brighter than white keeps its hue.
 cv::Scalar bgr_of(const color::Light& light) {
@@ -60,6 +62,7 @@ const cv::Mat& Overlay::draw(const ImageView& image, const OverlayFacts& facts) 
   if (facts.shade != nullptr) draw_shade(*facts.shade, top);
   if (facts.truth) draw_box(*facts.truth, kTruth, 1);
   if (facts.box) draw_box(*facts.box, kFound, 2);
+  for (const OverlayPerson& person : facts.people) draw_person(person);
   stripe_.push_back({facts.box ? facts.light : std::nullopt, facts.plurality});
   while (static_cast<int>(stripe_.size()) * kColumn_px > picture_.cols) stripe_.pop_front();
   draw_panel(facts);
@@ -88,6 +91,13 @@ void Overlay::draw_box(const Box& box, const cv::Scalar& color, int thickness) {
   const cv::Point opposite(cvRound((box.x + box.width) * zoom_) - 1, cvRound((box.y + box.height) * zoom_) - 1);
   cv::rectangle(picture_, corner, opposite, {0, 0, 0}, thickness + 2);
   cv::rectangle(picture_, corner, opposite, color, thickness);
+}
+
+void Overlay::draw_person(const OverlayPerson& person) {
+  draw_box(person.box, person.identified ? kPerson : kFace, person.identified ? 2 : 1);
+  const cv::Point corner(cvRound(person.box.x * zoom_) + 2, cvRound(person.box.y * zoom_) - 4);
+  cv::putText(picture_, person.text, corner, cv::FONT_HERSHEY_SIMPLEX, 0.5, {0, 0, 0}, 3, cv::LINE_AA);
+  cv::putText(picture_, person.text, corner, cv::FONT_HERSHEY_SIMPLEX, 0.5, kPerson, 1, cv::LINE_AA);
 }
 
 void Overlay::draw_panel(const OverlayFacts& facts) {

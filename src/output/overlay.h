@@ -14,6 +14,13 @@
 
 namespace cgsr::app {
 
+/// Somebody who is in view, or his face.
+struct OverlayPerson {
+  Box box;
+  std::string text;         ///< who it is: a number, never a name.
+  bool identified = false;  ///< by face or shirt; else it is a face alone.
+};
+
 /// What is written over an image for people.
 struct OverlayFacts {
   std::uint64_t image_number = 0;
@@ -23,7 +30,8 @@ struct OverlayFacts {
   std::optional<color::Light> plurality;  ///< of the grid's lights over the last second.
   double divergence = 0.0;
   const render::ShadeMasks* shade =
-      nullptr;                     ///< what may lie in shadow: tinted, and outlined where the surface itself does.
+      nullptr;  ///< what may lie in shadow: tinted, and outlined where the surface itself does.
+  std::vector<OverlayPerson> people;
   std::vector<std::string> lines;  ///< free text below the image, one line each; at most five are drawn.
 };
 
@@ -41,6 +49,7 @@ class Overlay {
 
  private:
   void draw_box(const Box& box, const cv::Scalar& color, int thickness);
+  void draw_person(const OverlayPerson& person);
   void draw_shade(const render::ShadeMasks& shade, cv::Mat& top);
   void draw_panel(const OverlayFacts& facts);
 

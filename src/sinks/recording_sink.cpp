@@ -16,7 +16,7 @@ McapChannel channel_of(const std::string& name, std::string_view meaning) {
 }
 
 /// The outputs in their order, then events, motion, and the images.
-std::vector<McapChannel> channels() {
+std::vector<McapChannel> channels(bool with_images) {
   std::vector<McapChannel> all;
   const stages::FrameResult frame;
   stages::for_each_output(frame, [&all](std::string_view name, std::string_view meaning, const auto& output) {
@@ -24,18 +24,18 @@ std::vector<McapChannel> channels() {
   });
   all.push_back(channel_of<stages::Event>("events", "A change of a state, of a stage or the task."));
   all.push_back(channel_of<MotionStatus>("motion", "A cycle of the motion loop."));
-  all.push_back(compressed_image_channel("/camera/image/compressed"));
+  if (with_images) all.push_back(compressed_image_channel("/camera/image/compressed"));
   return all;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<RecordingSink>> RecordingSink::create(const std::string& path) {
-  std::vector<McapChannel> all = channels();
-  const std::size_t count = all.size();
+Result<std::unique_ptr<RecordingSink>> RecordingSink::create(const std::string& path, bool with_images) {
+  std::vector<McapChannel> all = channels(with_images);
+  const std::size_t outputs = all.size() - (with_images ? 3 : 2);
   auto recorder = Recorder::create(path, std::move(all));
   if (!recorder) return tl::unexpected(recorder.error());
-  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder), count - 3));
+  return std::unique_ptr<RecordingSink>(new RecordingSink(std::move(*recorder), outputs, with_images));
 }
 
 template <class Output>
@@ -52,7 +52,7 @@ Result<void> RecordingSink::on_image(const ImageReport& report) {
     post(channel++, stamp, output.value);
   });
   stages::for_each_event(report.frame, [&](const stages::Event& event) { post(events(), stamp, event); });
-  if (report.picture != nullptr) recorder_->post(images(), stamp, report.picture->image.view());
+  if (report.picture != nullptr && with_images_) recorder_->post(images(), stamp, report.picture->image.view());
   return recorder_->step();
 }
 

@@ -12,7 +12,8 @@ namespace cgsr::sinks {
 /// and the images as JPEG. What finds no room is lost and counted.
 class RecordingSink final : public Sink {
  public:
-  static Result<std::unique_ptr<RecordingSink>> create(const std::string& path);
+  /// \param with_images  else there is no topic for them.
+  static Result<std::unique_ptr<RecordingSink>> create(const std::string& path, bool with_images = true);
 
   Result<void> on_image(const ImageReport& report) override;
   Result<void> on_control_cycle(const MotionStatus& status) override;
@@ -20,8 +21,8 @@ class RecordingSink final : public Sink {
   void summarize(Summary& summary) override;
 
  private:
-  RecordingSink(std::unique_ptr<Recorder> recorder, std::size_t outputs)
-      : recorder_(std::move(recorder)), outputs_(outputs) {}
+  RecordingSink(std::unique_ptr<Recorder> recorder, std::size_t outputs, bool with_images)
+      : recorder_(std::move(recorder)), outputs_(outputs), with_images_(with_images) {}
 
   // The channels: those of the outputs are their places in the list.
   [[nodiscard]] std::size_t events() const { return outputs_; }
@@ -33,6 +34,7 @@ class RecordingSink final : public Sink {
 
   std::unique_ptr<Recorder> recorder_;
   std::size_t outputs_;
+  bool with_images_;
   std::string message_;
 };
 

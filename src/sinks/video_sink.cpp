@@ -57,6 +57,24 @@ std::string line_of(std::string_view, const ImageReport&, const runtime::Aged<st
   return "";  // drawn, and in the lamp's line
 }
 
+std::string line_of(std::string_view, const ImageReport&, const runtime::Aged<stages::IdentifiedPeople>&) {
+  return "";  // drawn
+}
+
+std::vector<app::OverlayPerson> people_of(const runtime::Aged<stages::IdentifiedPeople>& people) {
+  std::vector<app::OverlayPerson> drawn;
+  if (!people.fresh()) return drawn;
+  for (const person::SeenFace& face : people.value.seen_faces()) {
+    const std::string who = !face.compared ? "?" : face.person ? fmt::format("{}", *face.person) : "stranger";
+    drawn.push_back({face.box, who, false});
+  }
+  const person::PersonSighting& person = people.value.person;
+  if (!person.person) return drawn;
+  const std::string who = *person.person == person::kStranger ? "stranger" : fmt::format("person {}", *person.person);
+  drawn.push_back({person.box, fmt::format("{} by {}", who, to_string(person.source)), true});
+  return drawn;
+}
+
 template <class Output>
 std::string line_of(std::string_view name, const ImageReport&, const runtime::Aged<Output>& output) {
   if (!output.ever()) return "";
@@ -117,6 +135,7 @@ app::OverlayFacts VideoSink::facts_of(const ImageReport& report) {
   facts.divergence = object.divergence;
   facts.shade = report.picture->masks.get();
   if (truth_ != nullptr) facts.truth = truth_->box;
+  facts.people = people_of(report.frame.people);
   facts.lines = overlay_lines(report, schedule_);
   return facts;
 }

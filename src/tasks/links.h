@@ -5,6 +5,7 @@
 
 #include "hal/camera.h"
 #include "pipeline/motion/motion_loop.h"
+#include "pipeline/person/face/face_recognizer.h"
 #include "pipeline/runtime/motion_stop.h"
 #include "pipeline/stages/switchboard.h"
 #include "platform/image_lease.h"
@@ -42,6 +43,10 @@ struct Links {
   Ring<stages::SwitchRequest, 8> switch_requests;                ///< vision -> switch worker.
   Ring<stages::SwitchAnswer, 8> switch_answers;                  ///< switch worker -> vision.
   Ring<sinks::SwitchRecord, 64, Overflow::kDiscard> switchings;  ///< switch worker -> housekeeping.
+
+  Ring<person::FaceQuestion, 1> face_questions;  ///< vision -> recognition.
+  WakeUp face_question_came;
+  Ring<person::FaceAnswer, 1> face_answers;  ///< recognition -> vision.
 
   Ring<sinks::VisionReport, 64, Overflow::kDiscard> reports;  ///< vision -> housekeeping.
   Ring<sinks::Picture, 2, Overflow::kDiscard>

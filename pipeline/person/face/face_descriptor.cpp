@@ -108,13 +108,20 @@ int dot(const std::uint8_t* a, const std::uint8_t* b) {
 
 }  // namespace
 
-std::optional<FaceDescriptor> describe_face(const ImageView& image, const Box& face) {
-  if (face.empty()) return std::nullopt;
+GreyPatch face_crop(const ImageView& image, const Box& face) {
+  if (face.empty()) return {};
   const double margin = face.width * kMargin_px / kFace_px;
   const Box region{face.x - margin, face.y - margin, face.width + 2 * margin, face.height + 2 * margin};
-  const GreyPatch patch = grey_region(image, region, kCrop_px, kCrop_px);
-  if (patch.pixels.empty()) return std::nullopt;
-  const auto planes = direction_planes(equal_contrast(patch));
+  return grey_region(image, region, kCrop_px, kCrop_px);
+}
+
+std::optional<FaceDescriptor> describe_face(const ImageView& image, const Box& face) {
+  return describe_crop(face_crop(image, face));
+}
+
+std::optional<FaceDescriptor> describe_crop(const GreyPatch& crop) {
+  if (crop.width_px != kCrop_px || crop.height_px != kCrop_px || crop.pixels.empty()) return std::nullopt;
+  const auto planes = direction_planes(equal_contrast(crop));
   FaceDescriptor descriptor{std::vector<std::uint8_t>(std::size_t{kDenseSide} * kDenseSide * kSiftSize)};
   std::uint8_t* out = descriptor.dense.data();
   for (int y = 0; y < kDenseSide; ++y) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "pipeline/person/face/grey_region.h"
 #include "platform/box.h"
 #include "platform/image_view.h"
 
@@ -32,6 +33,13 @@ struct FaceDescriptor {
 /// \return nothing: the crop is empty or lies outside of the image.
 /// Cost: 8 million instructions, allocates: for the trainer's thread, not for the frame path.
 std::optional<FaceDescriptor> describe_face(const ImageView& image, const Box& face);
+
+/// The pixels that describe_face() reads: the face and a margin around it, grey, 180 x 180. To be described later, on another thread.
+/// \return empty: the crop is empty or lies outside of the image.
+GreyPatch face_crop(const ImageView& image, const Box& face);
+
+/// Describes what face_crop() cut. \return nothing: it is no such crop. Cost: as describe_face().
+std::optional<FaceDescriptor> describe_crop(const GreyPatch& crop);
 
 /// \return what is kept of a face when it is enrolled.
 FaceView view_of(const FaceDescriptor& face);

@@ -16,10 +16,12 @@ struct FaceDetector::Cascade {
 
 namespace {
 
-constexpr double kWindow_px = 20.0;      // the cascade's own
-constexpr double kExpectedFace_px = 26;  // to which find_near() scales an expected face: room for nearer and farther
+// Faces are sought at twice the size of the cascade's own window of 20 px: from there on OpenCV tries every position, below only every other one.
+constexpr double kWindow_px = 40.0;
+constexpr double kExpectedFace_px = 48.0;  // to which find_near() scales an expected face: room for nearer and farther
+constexpr double kNearStep = 1.15, kNearMost = 1.3;  // scales that find_near() tries
 constexpr double kScaleStep = 1.2;  // between the two sizes that a slice looks for, and kScaleStep^2 between slices
-constexpr double kTileWidth_px = 84.0, kTileHeight_px = 64.0;
+constexpr double kTileWidth_px = 130.0, kTileHeight_px = 100.0;
 constexpr double kOverlap_px = kWindow_px * kScaleStep + 4.0;
 
 struct Slice {
@@ -58,8 +60,9 @@ std::vector<cv::Rect> detect(cv::CascadeClassifier& cascade, const GreyPatch& pa
                              double max_px) {
   std::vector<cv::Rect> found;
   const cv::Mat pixels(patch.height_px, patch.width_px, CV_8UC1, const_cast<std::uint8_t*>(patch.pixels.data()));
+  const int least = static_cast<int>(kWindow_px);
   const int most = static_cast<int>(std::ceil(max_px));
-  cascade.detectMultiScale(pixels, found, step, neighbors, 0, {20, 20}, {most, most});
+  cascade.detectMultiScale(pixels, found, step, neighbors, 0, {least, least}, {most, most});
   return found;
 }
 
@@ -96,14 +99,14 @@ Result<FaceDetector> FaceDetector::from_cascade(const std::string& cascade_xml,
 std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& expected) {
   if (image.empty() || expected.empty()) return std::nullopt;
   const double side = parameters_.region * expected.width;
-  const double scale = std::min(1.0, kExpectedFace_px / expected.width);
+  const double scale = kExpectedFace_px / expected.width;
   const Box region{expected.x + (expected.width - side) / 2, expected.y + (expected.height - side) / 2, side, side};
   const int size = static_cast<int>(std::lround(side * scale));
   const GreyPatch patch = grey_region(image, region, size, size);
   if (patch.pixels.empty()) return std::nullopt;
   std::optional<Box> nearest;
   for (const cv::Rect& r :
-       detect(cascade_->classifier, patch, 1.1, parameters_.min_neighbors, kExpectedFace_px * 1.6)) {
+       detect(cascade_->classifier, patch, kNearStep, parameters_.min_neighbors, kExpectedFace_px * kNearMost)) {
     const double back = side / size;
     const Box face{std::round(region.x) + r.x * back, std::round(region.y) + r.y * back, r.width * back,
                    r.height * back};
@@ -113,7 +116,7 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
 }
 
 void FaceDetector::find_in_slice(const ImageView& image, const Box& region, double face_px, std::vector<Box>& found) {
-  const double scale = std::min(1.0, kWindow_px / face_px);
+  const double scale = kWindow_px / face_px;
   const int width = static_cast<int>(std::lround(region.width * scale));
   const int height = static_cast<int>(std::lround(region.height * scale));
   const GreyPatch patch = grey_region(image, region, width, height);

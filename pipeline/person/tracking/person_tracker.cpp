@@ -54,7 +54,24 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
     sighting.source = PersonSource::kShirt;
     sighting.box = shirts_.box();
   }
+  measure(input, sighting);
   return sighting;
+}
+
+// The height of a shirt changes least when its person turns.
+void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) {
+  constexpr double kNew = 0.1;  // share of a new ratio
+  if (sighting.source == PersonSource::kShirt) {
+    sighting.face_px = shirt_per_face_ > 0.0 ? sighting.box.height / shirt_per_face_ : face_px_;
+    return;
+  }
+  face_px_ = sighting.face_px = sighting.box.width;
+  const Box& shirt = shirts_.box();
+  const auto& answer = feedback_.members()[kShirt].answer;
+  const bool cut = shirt.y + shirt.height >= input.image.height_px;
+  if (!answer || answer->label != sighting.person || cut) return;
+  const double ratio = shirt.height / sighting.box.width;
+  shirt_per_face_ = shirt_per_face_ > 0.0 ? (1.0 - kNew) * shirt_per_face_ + kNew * ratio : ratio;
 }
 
 }  // namespace cgsr::person

@@ -44,7 +44,8 @@ struct PersonSighting {
   std::optional<Label> person;  ///< nothing: nobody is identified; kStranger: somebody who is not enrolled.
   PersonSource source = PersonSource::kNone;
   double confidence = 0.0;
-  Box box;  ///< of what identified him, in pixels of the image.
+  Box box;               ///< of what identified him, in pixels of the image.
+  double face_px = 0.0;  ///< width of the face at the person's distance, seen or by the shirt; 0: not known.
 };
 
 /// One person from image to image by face and shirt (6.2): Alg. 6.1 with the face as primary and the shirt as secondary characteristic, and the
@@ -65,11 +66,15 @@ class PersonTracker {
   [[nodiscard]] const ShirtClassifier& shirts() const { return shirts_; }
 
  private:
+  void measure(const PersonImage& input, PersonSighting& sighting);
+
   PersonTrackerParameters parameters_;
   FaceClassifier faces_;
   ShirtClassifier shirts_;
   FeedbackClassifier<PersonImage> feedback_;
-  int since_face_ = 0;  // images since one was looked for
+  int since_face_ = 0;           // images since one was looked for
+  double face_px_ = 0.0;         // width of the last face that identified the person
+  double shirt_per_face_ = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
 };
 
 }  // namespace cgsr::person

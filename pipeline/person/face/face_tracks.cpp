@@ -1,0 +1,128 @@
+#include "pipeline/person/face/face_tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "pipeline/person/face/face_descriptor.h"
+
+namespace cgsr::person {
+namespace {
+
+bool same_face(const Box& a, const Box& b) {
+  const double dx = a.x + a.width / 2 - b.x - b.width / 2;
+  const double dy = a.y + a.height / 2 - b.y - b.height / 2;
+  return std::hypot(dx, dy) < 0.4 * std::max(a.width, b.width);
+}
+
+}  // namespace
+
+FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
+    : detector_(std::move(detector)), parameters_(parameters) {
+  tracks_.reserve(kMaxFaces);
+  found_.reserve(16);
+}
+
+FaceTrack* FaceTracks::longest_waiting() {
+  FaceTrack* longest = nullptr;
+  for (FaceTrack& track : tracks_) {
+    if (track.looks_waited_ > 0 && (longest == nullptr || track.looks_waited_ > longest->looks_waited_)) {
+      longest = &track;
+    }
+  }
+  return longest;
+}
+
+void FaceTracks::look_for(FaceTrack& track, const ImageView& image) {
+  track.looks_waited_ = 0;
+  const auto face = detector_.find_near(image, track.box);
+  track.seen = face.has_value();
+  track.missed = face ? 0 : track.missed + 1;
+  if (face) track.box = *face;
+}
+
+void FaceTracks::add(const Box& face) {
+  if (std::ranges::any_of(tracks_, [&](const FaceTrack& track) { return same_face(track.box, face); })) return;
+  if (tracks_.size() == kMaxFaces) {
+    const auto lost = std::ranges::max_element(tracks_, {}, &FaceTrack::missed);
+    if (lost->missed == 0) return;
+    tracks_.erase(lost);
+  }
+  FaceTrack track;
+  track.number = next_number_++;
+  track.box = face;
+  track.seen = true;
+  tracks_.push_back(track);
+}
+
+void FaceTracks::pass() {
+  for (FaceTrack& track : tracks_) {
+    track.seen = false;
+    ++track.images_waited_;
+  }
+}
+
+void FaceTracks::look(const ImageView& image, WorkBudget& budget) {
+  pass();
+  for (FaceTrack& track : tracks_) ++track.looks_waited_;
+  while (FaceTrack* const track = longest_waiting()) {
+    if (!budget.grant()) return;
+    look_for(*track, image);
+  }
+  std::erase_if(tracks_, [this](const FaceTrack& track) { return track.missed >= parameters_.max_missed; });
+  // Two that were followed onto one face are one: the older stays.
+  for (std::size_t i = tracks_.size(); i-- > 1;) {
+    const auto older = tracks_.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(tracks_.begin(), older, [&](const FaceTrack& t) { return same_face(t.box, tracks_[i].box); })) {
+      tracks_.erase(older);
+    }
+  }
+  found_.clear();
+  detector_.search(image, budget, found_);
+  for (const Box& face : found_) add(face);
+}
+
+std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
+  const FaceTrack* wanted = nullptr;
+  for (const FaceTrack& track : tracks_) {
+    const bool due = !track.match || track.images_waited_ >= parameters_.ask_again_images;
+    if (!track.seen || !due) continue;
+    const auto urgency = [](const FaceTrack& t) { return std::pair(!t.match, t.images_waited_); };
+    if (wanted == nullptr || urgency(track) > urgency(*wanted)) wanted = &track;
+  }
+  if (wanted == nullptr) return std::nullopt;
+  FaceQuestion question{wanted->number, face_crop(image, wanted->box)};
+  if (question.crop.pixels.empty()) return std::nullopt;
+  return question;
+}
+
+void FaceTracks::asked(std::uint32_t face) {
+  const auto track = std::ranges::find(tracks_, face, &FaceTrack::number);
+  if (track != tracks_.end()) track->images_waited_ = 0;
+}
+
+void FaceTracks::hear(const FaceAnswer& answer) {
+  const auto track = std::ranges::find(tracks_, answer.face, &FaceTrack::number);
+  if (track == tracks_.end()) return;
+  std::shift_right(track->votes_.begin(), track->votes_.end(), 1);
+  track->votes_.front() = answer.match;
+  track->vote_count_ = std::min(track->vote_count_ + 1, FaceTrack::kVotes);
+  count_votes(*track);
+}
+
+// The newest answer decides with those that agree with it; too few: an older agreement stands until the next answer.
+void FaceTracks::count_votes(FaceTrack& track) const {
+  const auto votes = std::span(track.votes_).first(track.vote_count_);
+  int agreeing = 0;
+  double confidence = 0.0;
+  for (const FaceMatch& vote : votes) {
+    if (vote.label != votes.front().label) continue;
+    ++agreeing;
+    confidence += vote.confidence;
+  }
+  if (agreeing < parameters_.min_agreeing) return;
+  track.match = votes.front();
+  track.match->confidence = confidence / agreeing;
+}
+
+}  // namespace cgsr::person

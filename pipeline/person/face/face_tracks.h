@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pipeline/person/face/face_detector.h"
+#include "pipeline/person/face/face_recognizer.h"
+#include "platform/parameters.h"
+
+namespace cgsr::person {
+
+struct FaceTrackParameters {
+  int max_missed = 3;
+  int min_agreeing = 2;
+  int ask_again_images = 15;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("max_missed", self.max_missed, Range{1, 30}, "",
+                 "A face that was looked for and not found so many times in a row is gone.");
+    visit.number("min_agreeing", self.min_agreeing, Range{1, 3}, "",
+                 "A face has a name, or is a stranger's, when so many of its last three comparisons agree.");
+    visit.number("ask_again_images", self.ask_again_images, Range{1, 300}, "",
+                 "A face that has a name is compared again after this many images.");
+  }
+};
+
+/// A face that is followed from image to image.
+struct FaceTrack {
+  std::uint32_t number = 0;  ///< never given again.
+  Box box;                   ///< where it was seen last, in pixels of the image.
+  bool seen = false;         ///< in this image.
+  int missed = 0;            ///< looks in a row that did not find it.
+  std::optional<FaceMatch> match =
+      std::nullopt;  ///< whose it is; nothing: not known yet. A match without a label: a stranger's.
+
+ private:
+  friend class FaceTracks;
+  static constexpr std::size_t kVotes = 3;
+  std::array<FaceMatch, kVotes> votes_{};  // the last comparisons, the newest first
+  std::size_t vote_count_ = 0;
+  int looks_waited_ = 0;   // since it was looked for
+  int images_waited_ = 0;  // since it was compared
+};
+
+/// The faces in view: each is looked for near its last place, what is left of the budget goes on with the search through the whole image (6.2.1), and
+/// each is named by comparisons beside the frame path that have to agree.
+///
+/// Threads: one. The detector allocates in every call.
+class FaceTracks {
+ public:
+  static constexpr std::size_t kMaxFaces = 4;  ///< the face that was lost longest ago gives way to a new one.
+
+  explicit FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters = {});
+
+  /// Looks for faces: one unit of the budget for each known face, those first that waited longest, and one for each slice of the search.
+  void look(const ImageView& image, WorkBudget& budget);
+  /// An image in which no face is looked for.
+  void pass();
+
+  /// \return the crop of the seen face whose name is most wanted; nothing: none is wanted now.
+  [[nodiscard]] std::optional<FaceQuestion> question(const ImageView& image) const;
+  /// The question of this face was taken.
+  void asked(std::uint32_t face);
+  /// An answer of the recogniser; of a face that is gone: ignored.
+  void hear(const FaceAnswer& answer);
+
+  [[nodiscard]] std::span<const FaceTrack> tracks() const { return tracks_; }
+
+ private:
+  void look_for(FaceTrack& track, const ImageView& image);
+  void add(const Box& face);
+  void count_votes(FaceTrack& track) const;
+  [[nodiscard]] FaceTrack* longest_waiting();
+
+  FaceDetector detector_;
+  FaceTrackParameters parameters_;
+  std::vector<FaceTrack> tracks_;
+  std::vector<Box> found_;
+  std::uint32_t next_number_ = 1;
+};
+
+}  // namespace cgsr::person

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "pipeline/person/face/face_tracks.h"
+#include "pipeline/person/tracking/person_tracker.h"
+#include "platform/image_view.h"
+#include "platform/parameters.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::person {
+
+struct IdentifierParameters {
+  FaceDetectorParameters detector{};
+  FaceTrackParameters faces{};
+  FaceMatchParameters match{};
+  PersonTrackerParameters tracker{};
+  int answer_after_images = 3;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.section("detector", self.detector, "Finding faces (6.2.1)");
+    visit.section("faces", self.faces, "Following faces from image to image and naming them");
+    visit.section("match", self.match, "Telling whose a face is");
+    visit.section("tracker", self.tracker, "Face and shirt of the person (6.2)");
+    visit.number("answer_after_images", self.answer_after_images, Range{1, 30}, "",
+                 "In lock-step a face is named so many images after it was seen; live as soon as it was compared.");
+  }
+};
+
+/// A face in view.
+struct SeenFace {
+  std::uint32_t number = 0;     ///< of its track.
+  Box box;                      ///< in pixels of the image.
+  bool compared = false;        ///< whether it is known whose it is.
+  std::optional<Label> person;  ///< nothing: not known yet, or, where compared, a stranger.
+  double confidence = 0.0;      ///< of that; 0 where it was not compared.
+};
+
+/// Who is in view.
+struct PeopleInView {
+  PersonSighting person;  ///< the one of interest, by face or shirt.
+  std::array<SeenFace, FaceTracks::kMaxFaces> faces{};
+  std::size_t face_count = 0;
+
+  [[nodiscard]] std::span<const SeenFace> seen_faces() const { return {faces.data(), face_count}; }
+};
+
+/// Chapter 6 for an image after the other: faces are followed and named, one of them is the primary characteristic of Alg. 6.1, the shirt below it the
+/// secondary one.
+///
+/// Threads: one. Finding faces allocates.
+class Identifier {
+ public:
+  /// \param recognizer  not null.
+  Identifier(FaceDetector detector, std::unique_ptr<FaceRecognizer> recognizer,
+             const IdentifierParameters& parameters = {});
+
+  /// \param image  YUYV.  \param interest  whose face counts where several are in view; nothing: the largest that is known.
+  /// \param budget  a unit for each known face that is looked for, and for each slice of the search for others.
+  PeopleInView identify(const ImageView& image, std::optional<Label> interest, WorkBudget& budget);
+
+  /// The images between the last question and its answer: from crop to name.
+  [[nodiscard]] int answer_took_images() const { return answer_took_images_; }
+
+ private:
+  void exchange_with_recognizer(const ImageView& image);
+  [[nodiscard]] std::optional<FaceSighting> face_of(std::optional<Label> interest) const;
+
+  FaceTracks faces_;
+  std::unique_ptr<FaceRecognizer> recognizer_;
+  PersonTracker tracker_;
+  PersonSighting last_;
+  bool asking_ = false;
+  int asked_images_ago_ = 0;
+  int answer_took_images_ = 0;
+};
+
+}  // namespace cgsr::person

@@ -1,0 +1,46 @@
+// The steps that make the stage of chapter 6 out of files: the cascade and the people who are known.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "src/boot/robot_plan.h"
+#include "src/input/face_detector_file.h"
+#include "src/input/identities_file.h"
+#include "src/tasks/recognition_task.h"
+
+namespace cgsr::boot {
+
+/// Who is known. A file that is not there is an error: a robot that is to identify people does not begin without any.
+Result<void> load_people(RobotState& state) {
+  const config::Person& config = state.setup.config.person;
+  if (!config.enabled()) return {};
+  auto identities = app::load_identities(config.identities);
+  if (!identities) return tl::unexpected(identities.error());
+  if (identities->people.empty()) {
+    return fail(
+        fmt::format("{}: nobody is enrolled; cgsr people enroll NAME --input IMAGES does it", config.identities));
+  }
+  state.report.notes.push_back(fmt::format("people: {} enrolled", identities->people.size()));
+  state.vision.people = person::gallery_of(*identities, config.identifier.match);
+  auto detector = app::read_face_detector(config.cascade, config.identifier.detector);
+  if (!detector) return tl::unexpected(detector.error());
+  state.vision.face_detector = std::move(*detector);
+  return {};
+}
+
+/// The stage that identifies people. Live, faces are named on a thread of their own; in lock-step so many images later.
+Result<void> make_people(RobotState& state) {
+  if (!state.vision.people) return {};
+  const person::IdentifierParameters& parameters = state.setup.config.person.identifier;
+  std::unique_ptr<person::FaceRecognizer> recognizer;
+  if (state.setup.live()) {
+    recognizer = std::make_unique<tasks::LinkedRecognizer>(state.links);
+  } else {
+    recognizer = std::make_unique<person::SteppedRecognizer>(*state.vision.people, parameters.answer_after_images);
+  }
+  state.vision.parts.make<stages::IdentifyStage>(std::move(*state.vision.face_detector), std::move(recognizer),
+                                                 parameters);
+  return {};
+}
+
+}  // namespace cgsr::boot

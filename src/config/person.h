@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "pipeline/person/tracking/identifier.h"
+
+namespace cgsr::config {
+
+/// The section [person] of a robot's file (chapter 6).
+struct Person {
+  std::string identities;
+  std::string cascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
+  person::IdentifierParameters identifier;
+
+  [[nodiscard]] bool enabled() const { return !identities.empty(); }
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.path(
+        "identities", self.identities,
+        "The people who are known: a file written by cgsr people enroll. Without one the robot identifies nobody.");
+    visit.path("cascade", self.cascade, "The cascade that finds frontal faces, of Debian's package opencv-data.");
+    person::IdentifierParameters::describe(self.identifier, visit);
+  }
+};
+
+}  // namespace cgsr::config

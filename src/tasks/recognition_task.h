@@ -1,0 +1,33 @@
+#pragma once
+
+#include "pipeline/person/face/face_recognizer.h"
+#include "src/tasks/links.h"
+
+namespace cgsr::tasks {
+
+/// Names faces on a thread of its own, below everything that has a deadline.
+class RecognitionTask {
+ public:
+  RecognitionTask(person::FaceGallery gallery, Links& links) : gallery_(std::move(gallery)), links_(links) {}
+
+  /// Answers every question that is there.
+  void step();
+
+ private:
+  person::FaceGallery gallery_;
+  Links& links_;
+};
+
+/// The vision thread's end of it.
+class LinkedRecognizer final : public person::FaceRecognizer {
+ public:
+  explicit LinkedRecognizer(Links& links) : links_(links) {}
+
+  bool ask(person::FaceQuestion&& question) override;
+  std::optional<person::FaceAnswer> answer() override { return links_.face_answers.pop(); }
+
+ private:
+  Links& links_;
+};
+
+}  // namespace cgsr::tasks

@@ -1,0 +1,124 @@
+// Chapter 6 as a user starts it: somebody is enrolled from pictures, and the robot identifies and follows that person by face and shirt.
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+#include "tests/support/scratch_cache.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kName = "Anna Karenina";
+
+using Row = std::map<std::string, std::string>;
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+std::vector<Row> read_rows(const std::string& csv) {
+  std::stringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const auto names = split(line);
+  std::vector<Row> rows;
+  while (std::getline(lines, line)) {
+    const auto cells = split(line);
+    Row row;
+    for (std::size_t i = 0; i < std::min(cells.size(), names.size()); ++i) row[names[i]] = cells[i];
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+class RunWithPeople : public ::testing::Test {
+ protected:
+  /// The arena with one person in it, seen from near at several moments of a turning head.
+  void take_portraits(int identity, const std::string& folder) {
+    std::string arena = read_text(CGSR_SOURCE_DIR "/config/worlds/people.toml");
+    arena.resize(arena.find("[[person]]"));
+    arena += "[[person]]\nname = \"somebody\"\nidentity = " + std::to_string(identity) +
+             "\nwalk = { stop = [{ at_m = [2.4, 0.0, 0.0], heading_deg = 180.0 }] }\n"
+             "head = [{ at_s = 0.0 }, { at_s = 1.0, yaw_deg = 12.0 }, { at_s = 2.0, yaw_deg = -12.0 }]\n";
+    write_text(scratch_ / "arena.toml", arena);
+    std::filesystem::create_directory(folder);
+    for (int i = 0; i < 4; ++i) {
+      const auto taken = run_cgsr({"sim", "render", "--world", scratch_ / "arena.toml", "--time",
+                                   std::to_string(0.5 + 0.7 * i), "--from", "1.2,0.05,1.55", "--to", "2.4,0,1.55",
+                                   "--size", "640x480", "--output", folder + "/" + std::to_string(i) + ".png"});
+      ASSERT_EQ(taken.exit_code, 0) << taken.errors;
+    }
+  }
+
+  void enroll(int identity, const std::string& name) {
+    const std::string folder = scratch_ / ("portraits" + std::to_string(identity));
+    take_portraits(identity, folder);
+    const auto enrolled =
+        run_cgsr({"people", "enroll", "--identities", identities(), "--name", name, "--input", folder});
+    ASSERT_EQ(enrolled.exit_code, 0) << enrolled.errors;
+  }
+
+  [[nodiscard]] std::string identities() const { return scratch_ / "identities"; }
+
+  std::string robot(const Keys& changes = {}) {
+    Keys keys = changes;
+    keys.insert({{"person.identities", "\"" + identities() + "\""}, {"sim.cache", "false"}});
+    const std::string file = scratch_ / "robot.toml";
+    write_text(file, extended(CGSR_SOURCE_DIR "/config/robots/sim-people.toml", keys));
+    return file;
+  }
+
+  const test::ScratchCache cache_;
+  ScratchFolder scratch_;
+};
+
+// The first six seconds of Fig. 6.8: seen from the front, then from behind.
+TEST_F(RunWithPeople, FollowsTheFaceAndThenTheShirtAndWritesNoNameDown) {
+  enroll(0, kName);
+  enroll(3, "Dora");
+  const auto run = run_cgsr({"run", "--config", robot(), "--duration", "6", "--csv", scratch_ / "run.csv",
+                             "--recording", scratch_ / "run.mcap", "--json", scratch_ / "run.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  int by_face = 0, by_shirt = 0, somebody_else = 0;
+  for (const Row& row : read_rows(read_text(scratch_ / "run.csv"))) {
+    const double time_s = std::stod(row.at("stamp_s"));
+    if (!row.at("person_number").empty() && row.at("person_number") != "1") ++somebody_else;
+    if (row.at("person_number") != "1") continue;
+    if (time_s < 4.0 && row.at("person_by") == "face") ++by_face;
+    if (time_s > 5.0 && row.at("person_by") == "shirt") ++by_shirt;
+  }
+  EXPECT_GE(by_face, 20) << "of 120 images from the front";
+  EXPECT_GE(by_shirt, 25) << "of 30 images from behind";
+  EXPECT_EQ(somebody_else, 0);
+  const auto json = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  EXPECT_FALSE(json["recording"].contains("/camera/image/compressed"))
+      << "pictures of people are kept only with --record-images";
+  EXPECT_TRUE(json["recording"].contains("/cgsr/people"));
+  for (const std::string file : {"run.csv", "run.mcap", "run.json"}) {
+    EXPECT_EQ(read_text(scratch_ / file).find("Anna"), std::string::npos) << file;
+  }
+  EXPECT_THAT(run.output + run.errors, Not(HasSubstr("Anna")));
+}
+
+TEST_F(RunWithPeople, RefusesARobotThatKnowsNobody) {
+  const auto run = run_cgsr({"check", "--config", robot()});
+  EXPECT_NE(run.exit_code, 0);
+  EXPECT_THAT(run.output + run.errors, HasSubstr("nobody is enrolled"));
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
