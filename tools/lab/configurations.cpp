@@ -112,6 +112,10 @@ Result<std::string> home_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-home");
 }
 
+Result<std::string> people_robot_hash(const Setting& setting) {
+  return robot_hash(setting, "sim-people");
+}
+
 Result<std::string> round_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-home-round");
 }

@@ -21,8 +21,9 @@ Result<std::string> lamp_hash(const Setting& setting);          ///< [probes] an
 Result<std::string> shade_hash(const Setting& setting);         ///< its [shade] and [stage.shade]
 Result<std::string> ball_hash(
     const Setting& setting);  ///< [color] of the command, its [integrated], [shade], [stage.shade] and [stage.track]
-Result<std::string> lamp_robot_hash(const Setting& setting);   ///< all of lamp_robot()
-Result<std::string> home_robot_hash(const Setting& setting);   ///< all of sim-home
-Result<std::string> round_robot_hash(const Setting& setting);  ///< all of sim-home-round
+Result<std::string> lamp_robot_hash(const Setting& setting);    ///< all of lamp_robot()
+Result<std::string> home_robot_hash(const Setting& setting);    ///< all of sim-home
+Result<std::string> people_robot_hash(const Setting& setting);  ///< all of sim-people
+Result<std::string> round_robot_hash(const Setting& setting);   ///< all of sim-home-round
 
 }  // namespace cgsr::lab

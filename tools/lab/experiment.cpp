@@ -222,6 +222,16 @@ constexpr std::array kExperiments{
                faces_hash,
                kPersonRooms,
                {"tools/lab/tables/faces_caltech.cpp"}},
+    Experiment{"figure-6.8",
+               "Face and shirt while a person turns, walks, leaves and comes back (6.3)",
+               6,
+               4,
+               true,
+               true,
+               figure_6_8,
+               people_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/figure_6_8.cpp", "tools/lab/person_cast.cpp", "config/worlds/people.toml"}},
 };
 
 void add_requirements(const Experiment& experiment, Report& report) {

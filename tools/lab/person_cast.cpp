@@ -1,0 +1,86 @@
+#include "tools/lab/person_cast.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "tools/lab/child.h"
+#include "tools/lab/source_path.h"
+
+namespace cgsr::lab {
+namespace {
+
+constexpr int kPortraits = 4;
+
+Result<void> write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream out(path);
+  out << text;
+  if (!out.flush()) return fail(fmt::format("{}: cannot be written", path.string()));
+  return {};
+}
+
+}  // namespace
+
+Result<std::string> run_cgsr(std::vector<std::string> words) {
+  words.insert(words.begin(), (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr").string());
+  return run_for_text(words);
+}
+
+TableFolder::TableFolder(const std::string& name)
+    : path_(std::filesystem::temp_directory_path() / fmt::format("cgsr-{}-{}", name, getpid())) {
+  std::filesystem::create_directories(path_);
+}
+
+TableFolder::~TableFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+Result<std::string> empty_arena() {
+  const std::string path = source_path("config/worlds/people.toml");
+  std::ifstream in(path);
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto people = text.find("[[person]]");
+  if (people == std::string::npos) return fail(fmt::format("{}: has no [[person]]", path));
+  text.resize(people);
+  return text;
+}
+
+Result<std::filesystem::path> Portraits::of(int identity) {
+  const auto pictures = folder_ / fmt::format("portraits-{}", identity);
+  if (std::filesystem::exists(pictures)) return pictures;
+  auto world = empty_arena();
+  if (!world) return tl::unexpected(world.error());
+  *world += fmt::format(
+      "[[person]]\nname = \"sitter\"\nidentity = {}\nwalk = {{ stop = [{{ at_m = [2.4, 0.0, 0.0], heading_deg = 180.0 "
+      "}}] "
+      "}}\nhead = [{{ at_s = 0.0 }}, {{ at_s = 1.0, yaw_deg = 12.0 }}, {{ at_s = 2.0, yaw_deg = -12.0 }}]\n",
+      identity);
+  const auto file = folder_ / fmt::format("sitter-{}.toml", identity);
+  if (auto written = write(file, *world); !written) return tl::unexpected(written.error());
+  std::filesystem::create_directories(pictures);
+  for (int i = 0; i < kPortraits; ++i) {
+    auto taken = run_cgsr({"sim", "render", "--world", file.string(), "--time", fmt::format("{}", 0.5 + 0.7 * i),
+                           "--from", "1.2,0.05,1.55", "--to", "2.4,0,1.55", "--size", "640x480", "--seed",
+                           fmt::format("{}", i + 1), "--output", (pictures / fmt::format("{}.png", i)).string()});
+    if (!taken) return tl::unexpected(taken.error());
+  }
+  return pictures;
+}
+
+Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits, const std::filesystem::path& file) {
+  int refused = 0;
+  for (const int identity : identities) {
+    const auto pictures = portraits.of(identity);
+    if (!pictures) return tl::unexpected(pictures.error());
+    const auto enrolled = run_cgsr({"people", "enroll", "--identities", file.string(), "--name",
+                                    fmt::format("identity {}", identity), "--input", pictures->string()});
+    if (!enrolled) ++refused;
+  }
+  return refused;
+}
+
+}  // namespace cgsr::lab

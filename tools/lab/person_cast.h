@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "platform/error.h"
+
+namespace cgsr::lab {
+
+/// Runs `cgsr` beside the lab's own program. \return what it printed; or its exit code and that.
+Result<std::string> run_cgsr(std::vector<std::string> words);
+
+/// A folder for the files of a table, gone with this.
+class TableFolder {
+ public:
+  explicit TableFolder(const std::string& name);
+  ~TableFolder();
+  TableFolder(const TableFolder&) = delete;
+  TableFolder& operator=(const TableFolder&) = delete;
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The shipped person arena without its people, as text.
+Result<std::string> empty_arena();
+
+/// Draws pictures of generated people from which they are enrolled: from near, at several moments of a turning head, each once.
+class Portraits {
+ public:
+  /// \param folder  in which the pictures go; outlives this.
+  explicit Portraits(const TableFolder& folder) : folder_(folder) {}
+
+  /// \param identity  0 .. sim::kIdentities - 1. \return the folder of the pictures.
+  Result<std::filesystem::path> of(int identity);
+
+ private:
+  const TableFolder& folder_;
+};
+
+/// Enrols generated people, the first as number 1 and so on.
+/// \return how many were taken for somebody who was enrolled already, and therefore refused.
+Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits, const std::filesystem::path& file);
+
+}  // namespace cgsr::lab
