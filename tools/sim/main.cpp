@@ -12,6 +12,7 @@
 #include "src/commands/parse_error.h"
 #include "src/output/output_claims.h"
 #include "tools/sim/export_world.h"
+#include "tools/sim/generate_home.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"
 #include "tools/sim/words.h"
@@ -88,6 +89,27 @@ void add_export(CLI::App& command, ExportWords& words) {
       ->capture_default_str();
   command.add_option("--errors", words.request.error_factor, "so many times the errors that are usual; 0: none")
       ->capture_default_str();
+}
+
+struct HomeWords {
+  std::int64_t seed = 0;
+  HomeRequest request;
+};
+
+void add_home(CLI::App& command, HomeWords& words) {
+  command.add_option("--seed", words.seed, "which home: the same number, the same home")
+      ->check(cgsr::app::in_range(0, kMaxHomeSeed))
+      ->required();
+  command.add_option("--output", words.request.folder, "folder for world, map, camera, robot and round")->required();
+  cgsr::app::add_force_option(command, words.request.force);
+}
+
+int home(HomeWords& words) {
+  words.request.seed = static_cast<std::uint32_t>(words.seed);
+  const auto home = generate_home_to(words.request);
+  if (!home) return complain(home.error());
+  fmt::print("{}", describe_home(*home));
+  return 0;
 }
 
 struct RunWords {
@@ -194,6 +216,10 @@ int run_command_line(int argc, char** argv) {
   CLI::App* run_command =
       app.add_subcommand("run", "a scenario, played with a robot that nobody commands: video and truth");
   add_run(*run_command, run_words);
+  HomeWords home_words;
+  CLI::App* home_command =
+      app.add_subcommand("home", "a home drawn from a seed: world, map, camera, robot and a round through it");
+  add_home(*home_command, home_words);
   std::string world;
   CLI::App* info_command =
       app.add_subcommand("info", "what is in a world: robots, views, lamps and their lines, actors");
@@ -205,6 +231,7 @@ int run_command_line(int argc, char** argv) {
   }
   if (*render_command) return render(render_words, render_command->count("--time") > 0);
   if (*run_command) return run(run_words);
+  if (*home_command) return home(home_words);
   if (*export_command) return export_to_folder(export_words);
   return info(world);
 }

@@ -36,7 +36,7 @@ Result<int> find_named(const Things& things, const std::string& wanted, const ch
                           names.empty() ? "is none" : fmt::format("are {}", fmt::join(names, ", "))));
 }
 
-/// \param kind  "world" or "scenario".
+/// \param kind  "world", "scenario" or "robot".
 Result<fs::path> find_shipped(const std::string& kind, const std::string& name) {
   if (name.empty()) return fail(fmt::format("no {} is named", kind));
   std::error_code error;
@@ -67,6 +67,10 @@ Result<fs::path> find_world(const std::string& name) {
 
 Result<fs::path> find_scenario(const std::string& name) {
   return find_shipped("scenario", name);
+}
+
+Result<fs::path> find_robot_file(const std::string& name) {
+  return find_shipped("robot", name);
 }
 
 Result<World> load_world(const std::string& name) {

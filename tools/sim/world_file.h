@@ -15,6 +15,9 @@ Result<std::filesystem::path> find_world(const std::string& name);
 /// The same of a scenario in config/scenarios.
 Result<std::filesystem::path> find_scenario(const std::string& name);
 
+/// The same of a robot's file in config/robots.
+Result<std::filesystem::path> find_robot_file(const std::string& name);
+
 /// Reads and builds it. \return every problem of the file, a line each.
 Result<World> load_world(const std::string& name);
 

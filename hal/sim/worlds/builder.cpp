@@ -30,6 +30,19 @@ std::vector<LightKey> script_of(const std::vector<LightKeySpec>& specs) {
   return script;
 }
 
+CameraModel lens_of(const LensSpec& spec) {
+  CameraModel camera;
+  camera.fx_px = spec.fx_px;
+  camera.fy_px = spec.fy_px;
+  camera.cx_px = spec.cx_px;
+  camera.cy_px = spec.cy_px;
+  camera.k1 = spec.k1;
+  camera.k2 = spec.k2;
+  camera.p1 = spec.p1;
+  camera.p2 = spec.p2;
+  return camera;
+}
+
 Result<Path> path_of(const WalkSpec& walk) {
   std::vector<Waypoint> stops;
   for (const StopSpec& stop : walk.stop) {
@@ -187,6 +200,7 @@ void WorldBuilder::add_person(const PersonSpec& spec) {
 void WorldBuilder::add_robot(const RobotSpec& spec) {
   RobotBody robot;
   robot.name = spec.name;
+  robot.camera = lens_of(spec.camera);
   robot.camera_height_m = spec.camera_height_m;
   robot.camera_forward_m = spec.camera_forward_m;
   robot.camera_down_rad = degrees(spec.camera_down_deg);

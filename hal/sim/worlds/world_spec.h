@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/sim/scene/camera_model.h"
 #include "hal/sim/worlds/actor_spec.h"
 #include "hal/sim/worlds/shape_spec.h"
 
@@ -100,6 +101,30 @@ struct BoardSpec {
   }
 };
 
+/// [robot.camera]: its lens, for 640 x 480 pixels; the words of CameraModel.
+struct LensSpec {
+  double fx_px = CameraModel{}.fx_px;
+  double fy_px = CameraModel{}.fy_px;
+  double cx_px = CameraModel{}.cx_px;
+  double cy_px = CameraModel{}.cy_px;
+  double k1 = CameraModel{}.k1;
+  double k2 = CameraModel{}.k2;
+  double p1 = CameraModel{}.p1;
+  double p2 = CameraModel{}.p2;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.number("fx_px", self.fx_px, {100.0, 5000.0}, "px", "focal length across");
+    visit.number("fy_px", self.fy_px, {100.0, 5000.0}, "px", "focal length down");
+    visit.number("cx_px", self.cx_px, {0.0, 639.0}, "px", "column of the optical axis");
+    visit.number("cy_px", self.cy_px, {0.0, 479.0}, "px", "row of the optical axis");
+    visit.number("k1", self.k1, {-1.0, 1.0}, "", "radial distortion, of r^2");
+    visit.number("k2", self.k2, {-1.0, 1.0}, "", "radial distortion, of r^4");
+    visit.number("p1", self.p1, {-0.1, 0.1}, "", "tangential distortion");
+    visit.number("p2", self.p2, {-0.1, 0.1}, "", "tangential distortion");
+  }
+};
+
 /// [[robot]]: who looks. The first one's camera is the world's.
 struct RobotSpec {
   int line = 0;
@@ -109,6 +134,7 @@ struct RobotSpec {
   double camera_height_m = 1.20;
   double camera_forward_m = 0.0;
   double camera_down_deg = 0.0;
+  LensSpec camera;
   bool has_board = false;
   BoardSpec board;
   WalkSpec walk;
@@ -123,6 +149,7 @@ struct RobotSpec {
     visit.number("camera_forward_m", self.camera_forward_m, {-3.0, 3.0}, "m", "of the optical centre, before the axle");
     visit.number("camera_down_deg", self.camera_down_deg, {-80.0, 80.0}, "deg", "tilt below the horizon");
     visit.flag("has_board", self.has_board, "carries the probe board");
+    visit.section("camera", self.camera, "its lens, for 640 x 480 pixels");
     visit.section("board", self.board, "the white board with its cones");
     visit.section("walk", self.walk, "a scripted way instead of a driven base: it starts there");
   }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,11 +19,15 @@ Result<std::unique_ptr<Place>> Place::make(const std::string& world, const Chang
   const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / (world + ".toml");
   auto spec = config::read_file<sim::WorldSpec>(file);
   if (!spec) return tl::unexpected(spec.error());
-  spec->ball.clear();
-  spec->object.clear();
-  spec->person.clear();
-  if (change) change(*spec);
-  auto built = sim::build_world(*spec, file);
+  return make(std::move(*spec), file.string(), change);
+}
+
+Result<std::unique_ptr<Place>> Place::make(sim::WorldSpec spec, const std::string& name, const Change& change) {
+  spec.ball.clear();
+  spec.object.clear();
+  spec.person.clear();
+  if (change) change(spec);
+  auto built = sim::build_world(spec, name);
   if (!built) return tl::unexpected(built.error());
   std::unique_ptr<Place> place(new Place(std::move(*built)));
   sim::SwitchStates on;

@@ -36,6 +36,9 @@ class Place {
   /// \param world  a file of config/worlds, without `.toml`.  \param change  of what the file says, once its actors are taken out.
   static Result<std::unique_ptr<Place>> make(const std::string& world, const Change& change = {});
 
+  /// The same of a world that is no file: a generated home. \param name  for messages.
+  static Result<std::unique_ptr<Place>> make(sim::WorldSpec spec, const std::string& name, const Change& change = {});
+
   [[nodiscard]] const sim::World& world() const { return world_; }
   [[nodiscard]] const sim::Scene& scene() const { return world_.scene; }
   [[nodiscard]] const sim::CameraModel& camera() const { return world_.scene.robots.front().camera; }
