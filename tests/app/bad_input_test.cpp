@@ -201,13 +201,13 @@ TEST_F(BadInputFault, MalformedConfiguration) {
 
 TEST_F(BadInputFault, ScheduleThatDoesNotFitShowsTheSum) {
   Keys full;
-  for (const char* const stage : {"decode", "localize", "probes", "shade", "search", "track", "decide"}) {
+  for (const char* const stage : {"decode", "localize", "probes", "shade", "search", "track", "identify", "decide"}) {
     full[std::string("stage.") + stage + ".budget_us"] = "33000";
   }
   write_text(scratch_ / "full.toml", extended(CGSR_SOURCE_DIR "/config/robots/video.toml", full));
   const auto outcome = run_cgsr({"check", "--config", scratch_ / "full.toml", "--input", images(), "--model", model()});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("231000"));
+  EXPECT_THAT(outcome.errors, HasSubstr("264000"));
 }
 
 TEST_F(BadInputFault, UnwritableOutputIsSaidBeforeTheWork) {

@@ -40,7 +40,7 @@ class FollowPerson : public testing::Test {
   Decision see(FollowPersonTask& task, const person::PersonSighting& sighting) {
     FrameResult frame;
     frame.people.value.person = sighting;
-    frame.people.stamp = MonoTime{seconds(1.0)};
+    frame.people.age = Duration::zero();
     return task.decide(frame, image_, kImage);
   }
 
