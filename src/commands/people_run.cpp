@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -69,6 +70,17 @@ std::string person_name(const person::Identities& identities, Label number) {
   return one == identities.people.end() ? "a stranger" : one->name;
 }
 
+/// \return the person whose face most of these are, if they are one's.
+std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, const person::FaceGallery& gallery) {
+  std::map<Label, std::size_t> named;
+  for (const FaceDescriptor& face : faces) {
+    if (const auto match = gallery.identify(face); match.label) ++named[*match.label];
+  }
+  const auto most = std::ranges::max_element(named, {}, &std::pair<const Label, std::size_t>::second);
+  if (most == named.end() || 2 * most->second <= faces.size()) return std::nullopt;
+  return most->first;
+}
+
 /// \return the person who gets the views: known already, or new.
 Result<Identity*> person_to_enroll(person::Identities& identities, const PeopleOptions& options) {
   const auto known = std::ranges::find(identities.people, options.name, &Identity::name);
@@ -103,11 +115,9 @@ Result<Enrolled> enroll(const PeopleOptions& options) {
   Enrolled enrolled{.number = (*who)->number, .note = opened->note};
   const auto faces = lone_faces(options, enrolled);
   if (!faces) return tl::unexpected(faces.error());
-  for (const FaceDescriptor& face : *faces) {
-    const auto match = others.identify(face);
-    if (!match.label || *match.label == enrolled.number) continue;
+  if (const auto other = person_of_most(*faces, others); other && *other != enrolled.number) {
     return fail(fmt::format("{}: this is the face of '{}', who is enrolled already", options.input,
-                            person_name(identities, *match.label)));
+                            person_name(identities, *other)));
   }
   const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
   auto& views = (*who)->views;

@@ -23,10 +23,18 @@ constexpr const char* kName = "Anna Karenina";
 
 using Row = std::map<std::string, std::string>;
 
+/// A comma within quotes belongs to its cell; the last cell is empty where the row ends with one.
 std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (c != '"') {
+      cells.back() += c;
+    }
+  }
   return cells;
 }
 
@@ -89,21 +97,24 @@ class RunWithPeople : public ::testing::Test {
 // The first six seconds of Fig. 6.8: seen from the front, then from behind.
 TEST_F(RunWithPeople, FollowsTheFaceAndThenTheShirtAndWritesNoNameDown) {
   enroll(0, kName);
+  enroll(1, "Ben");
   enroll(3, "Dora");
   const auto run = run_cgsr({"run", "--config", robot(), "--duration", "6", "--csv", scratch_ / "run.csv",
                              "--recording", scratch_ / "run.mcap", "--json", scratch_ / "run.json"});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  int by_face = 0, by_shirt = 0, somebody_else = 0;
+  int by_face = 0, by_shirt = 0;
+  std::string somebody_else;
   for (const Row& row : read_rows(read_text(scratch_ / "run.csv"))) {
     const double time_s = std::stod(row.at("stamp_s"));
-    if (!row.at("person_number").empty() && row.at("person_number") != "1") ++somebody_else;
+    if (!row.at("person_number").empty() && row.at("person_number") != "1")
+      somebody_else += row.at("stamp_s") + " s: " + row.at("person_number") + " by " + row.at("person_by") + "\n";
     if (row.at("person_number") != "1") continue;
     if (time_s < 4.0 && row.at("person_by") == "face") ++by_face;
     if (time_s > 5.0 && row.at("person_by") == "shirt") ++by_shirt;
   }
   EXPECT_GE(by_face, 20) << "of 120 images from the front";
   EXPECT_GE(by_shirt, 25) << "of 30 images from behind";
-  EXPECT_EQ(somebody_else, 0);
+  EXPECT_LE(std::ranges::count(somebody_else, '\n'), 1) << "at most one of a hundred images:\n" << somebody_else;
   const auto json = nlohmann::json::parse(read_text(scratch_ / "run.json"));
   EXPECT_FALSE(json["recording"].contains("/camera/image/compressed"))
       << "pictures of people are kept only with --record-images";

@@ -27,17 +27,17 @@ void Identifier::exchange_with_recognizer(const ImageView& image) {
   asked_images_ago_ = 0;
 }
 
-// The face of the person of interest; without him the largest one that was compared.
+// The face of the person of interest; the largest one that was compared where his is not followed. While it is followed and not seen in this image,
+// the others are other people's and say nothing of him.
 std::optional<FaceSighting> Identifier::face_of(std::optional<Label> interest) const {
   const FaceTrack* chosen = nullptr;
   const auto rank = [&](const FaceTrack& track) {
     return std::pair(interest && track.match->label == interest, track.box.area());
   };
   for (const FaceTrack& track : faces_.tracks()) {
-    if (!track.seen || !track.match) continue;
-    if (chosen == nullptr || rank(track) > rank(*chosen)) chosen = &track;
+    if (track.match && (chosen == nullptr || rank(track) > rank(*chosen))) chosen = &track;
   }
-  if (chosen == nullptr) return std::nullopt;
+  if (chosen == nullptr || !chosen->seen) return std::nullopt;
   return FaceSighting{chosen->box, *chosen->match};
 }
 

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -78,16 +77,25 @@ struct Seen {
   bool by_face = false;
 };
 
+/// A comma within quotes belongs to its cell.
+std::vector<std::string> cells_of(const std::string& row) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (const char c : row) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) {
+      cells.emplace_back();
+    } else if (c != '"') {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
 Result<std::vector<Seen>> read_csv(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  const auto cells_of = [](const std::string& row) {
-    std::vector<std::string> cells;
-    std::stringstream stream(row);
-    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-    return cells;
-  };
   const auto names = cells_of(line);
   const auto column = [&names](const char* name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
