@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
+#include <opencv2/imgcodecs.hpp>
 
 #include "hal/sim/generator/free_floor.h"
 #include "hal/sim/generator/home.h"
@@ -252,6 +253,25 @@ TEST(GeneratedHomesTool, WritesAHomeAndRefusesToWriteOverAFolder) {
   write_text(scratch / "file", "x");
   EXPECT_THAT(run_cgsr({"home", "--seed", "6", "--output", scratch / "file"}, CGSR_PROGRAM).errors,
               HasSubstr("is a file; name a folder"));
+}
+
+TEST(GeneratedHomesTool, ReportsHowHomesAreDistributed) {
+  ScratchFolder scratch;
+  const auto done = run_cgsr({"home", "--seed", "3", "--report", "15", "--output", scratch / "report"}, CGSR_PROGRAM);
+  ASSERT_EQ(done.exit_code, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("15 homes, seeds 3 to 17"));
+  EXPECT_EQ(read_text(scratch / "report/distributions.txt"), done.output);
+  const std::string csv = read_text(scratch / "report/homes.csv");
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 16);
+  const auto home = generate_home(4);
+  ASSERT_TRUE(home);
+  EXPECT_THAT(csv, HasSubstr(fmt::format("\n4,\"{}\",{},{:.6g},", home->plan.door_graph(), home->plan.rooms.size(),
+                                         home->plan.outline.area())));
+  EXPECT_THAT(read_text(scratch / "report/distributions.json"), HasSubstr("\"door_graphs\""));
+  EXPECT_FALSE(cv::imread(scratch / "report/homes.png").empty());
+  EXPECT_EQ(run_cgsr({"home", "--seed", "3", "--report", "2", "--output", scratch / "report"}, CGSR_PROGRAM).exit_code,
+            1);
+  EXPECT_NE(run_cgsr({"home", "--seed", "3", "--report", "0", "--output", scratch / "r"}, CGSR_PROGRAM).exit_code, 0);
 }
 
 TEST(GeneratedHomesTool, RefusesSeedsThatCannotBe) {

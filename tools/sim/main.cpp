@@ -13,6 +13,7 @@
 #include "src/output/output_claims.h"
 #include "tools/sim/export_world.h"
 #include "tools/sim/generate_home.h"
+#include "tools/sim/home_report.h"
 #include "tools/sim/render_world.h"
 #include "tools/sim/run_scenario.h"
 #include "tools/sim/words.h"
@@ -92,21 +93,33 @@ void add_export(CLI::App& command, ExportWords& words) {
 }
 
 struct HomeWords {
-  std::int64_t seed = 0;
-  HomeRequest request;
+  std::uint32_t seed = 0;
+  int report = 0;
+  std::string folder;
+  bool force = false;
 };
 
 void add_home(CLI::App& command, HomeWords& words) {
   command.add_option("--seed", words.seed, "which home: the same number, the same home")
       ->check(cgsr::app::in_range(0, kMaxHomeSeed))
       ->required();
-  command.add_option("--output", words.request.folder, "folder for world, map, camera, robot and round")->required();
-  cgsr::app::add_force_option(command, words.request.force);
+  command.add_option("--output", words.folder, "folder for world, map, camera, robot and round; or for the report")
+      ->required();
+  command
+      .add_option("--report", words.report,
+                  "no home, but how so many of them are distributed, from --seed on, and twelve from above")
+      ->check(cgsr::app::in_range(1, 10000));
+  cgsr::app::add_force_option(command, words.force);
 }
 
-int home(HomeWords& words) {
-  words.request.seed = static_cast<std::uint32_t>(words.seed);
-  const auto home = generate_home_to(words.request);
+int home(const HomeWords& words) {
+  if (words.report > 0) {
+    const auto text = report_homes({words.seed, words.report, words.folder, words.force});
+    if (!text) return complain(text.error());
+    fmt::print("{}", *text);
+    return 0;
+  }
+  const auto home = generate_home_to({words.seed, words.folder, words.force});
   if (!home) return complain(home.error());
   fmt::print("{}", describe_home(*home));
   return 0;
