@@ -57,6 +57,13 @@ constexpr std::array kRequirements{
     NamedRequirement{"closed-loop", "commanded zero after a loss", "worst", at_most(0.5)},
     NamedRequirement{"closed-loop", "standing after a loss", "worst", at_most(0.5)},
     // Chapter 4.
+    NamedRequirement{"homes-4.1", "ours", "corrected", at_least(0.95)},
+    NamedRequirement{"homes-4.1", "ours", "position error", at_most(2.0)},
+    NamedRequirement{"homes-4.1", "ours", "direction error", at_most(0.3)},
+    NamedRequirement{"homes-4.1", "ours", "within 5 cm and 1 deg", at_least(0.95)},
+    NamedRequirement{"homes-4.1", "ours", "false claims", at_most(0.005)},
+    NamedRequirement{"homes-4.1", "ours, perfect copy", "position error", at_most(1.0)},
+    NamedRequirement{"homes-4.1", "ours, perfect copy", "direction error", at_most(0.1)},
     NamedRequirement{"table-4.1", "ours", "corrected", at_least(0.95)},
     NamedRequirement{"table-4.1", "ours", "position error", at_most(2.5)},
     NamedRequirement{"table-4.1", "ours", "direction error", at_most(0.5)},
