@@ -53,9 +53,10 @@ bool FreeFloor::inside(int column, int row) const {
 }
 
 FloorPoint FreeFloor::middle_of(std::size_t cell) const {
-  const auto columns = static_cast<std::size_t>(columns_);
-  return {outline_.x0 + (static_cast<double>(cell % columns) + 0.5) * kCell_m,
-          outline_.y0 + (static_cast<double>(cell / columns) + 0.5) * kCell_m};
+  const std::size_t row = cell / static_cast<std::size_t>(columns_);
+  const std::size_t column = cell % static_cast<std::size_t>(columns_);
+  return {outline_.x0 + (static_cast<double>(column) + 0.5) * kCell_m,
+          outline_.y0 + (static_cast<double>(row) + 0.5) * kCell_m};
 }
 
 std::size_t FreeFloor::cell_at(const FloorPoint& p) const {
