@@ -23,7 +23,10 @@ def main():
             target.write_bytes((source / name).read_bytes())
         # Outside of any repository, where git applies a patch to files as they lie there.
         outside = {**os.environ, "GIT_CEILING_DIRECTORIES": str(pathlib.Path(scratch).parent)}
-        subprocess.run(["git", "apply", str(patch)], cwd=scratch, env=outside, check=True)
+        # Who follows the guide has applied them already, and CMake runs once more.
+        there = subprocess.run(["git", "apply", "--reverse", "--check", str(patch)], cwd=scratch, env=outside, capture_output=True)
+        if there.returncode != 0:
+            subprocess.run(["git", "apply", str(patch)], cwd=scratch, env=outside, check=True)
         for name in files:
             made, target = pathlib.Path(scratch, name).read_bytes(), folder / name
             if target.exists() and target.read_bytes() == made:

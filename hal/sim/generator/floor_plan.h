@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/sim/generator/draw.h"
@@ -30,6 +33,10 @@ struct FloorRect {
 };
 
 enum class RoomKind : std::uint8_t { kLiving, kKitchen, kBedroom, kStudy, kHall, kBath };
+constexpr std::string_view to_string(RoomKind kind) {
+  constexpr std::array<std::string_view, 6> kWords{"living room", "kitchen", "bedroom", "study", "hall", "bath"};
+  return kWords[static_cast<std::size_t>(kind)];
+}
 
 struct Room {
   std::string name;
@@ -41,6 +48,10 @@ struct Room {
 };
 
 enum class OpeningKind : std::uint8_t { kDoor, kPassage, kWindow };
+constexpr std::string_view to_string(OpeningKind kind) {
+  constexpr std::array<std::string_view, 3> kWords{"door", "passage", "window"};
+  return kWords[static_cast<std::size_t>(kind)];
+}
 
 /// A hole in a wall. `from` and `to` run along the wall [m]; what can be driven through lies between them.
 struct Opening {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "hal/sim/generator/floor_plan.h"
@@ -17,6 +20,10 @@ inline constexpr double kRobotRadius_m = 0.35;
 
 /// A side of a room, seen from inside.
 enum class Side : std::uint8_t { kSouth, kNorth, kWest, kEast };
+constexpr std::string_view to_string(Side side) {
+  constexpr std::array<std::string_view, 4> kWords{"south", "north", "west", "east"};
+  return kWords[static_cast<std::size_t>(side)];
+}
 inline constexpr std::array kSides{Side::kSouth, Side::kNorth, Side::kWest, Side::kEast};
 
 /// Something that stands or hangs in the home.

@@ -68,8 +68,9 @@ std::array<cv::Mat, kDirections> direction_planes(const cv::Mat& face) {
 std::array<float, 16> cell_weights() {
   std::array<float, 16> weights{};
   for (int i = 0; i < 16; ++i) {
-    const float x = static_cast<float>(i % 4) - 1.5F;
-    const float y = static_cast<float>(i / 4) - 1.5F;
+    const int column = i % 4, row = i / 4;
+    const float x = static_cast<float>(column) - 1.5F;
+    const float y = static_cast<float>(row) - 1.5F;
     weights[static_cast<std::size_t>(i)] = std::exp(-(x * x + y * y) / 8);
   }
   return weights;
@@ -81,8 +82,9 @@ void describe_point(const std::array<cv::Mat, kDirections>& planes, int x_px, in
   std::array<float, kSiftSize> values{};
   float squares = 0.0F;
   for (int cell = 0; cell < 16; ++cell) {
-    const int x = x_px + static_cast<int>(std::lround((cell % 4 - 1.5) * kCell_px));
-    const int y = y_px + static_cast<int>(std::lround((cell / 4 - 1.5) * kCell_px));
+    const int column = cell % 4, row = cell / 4;
+    const int x = x_px + static_cast<int>(std::lround((column - 1.5) * kCell_px));
+    const int y = y_px + static_cast<int>(std::lround((row - 1.5) * kCell_px));
     for (int d = 0; d < kDirections; ++d) {
       const float value =
           planes[static_cast<std::size_t>(d)].at<float>(y, x) * kWeights[static_cast<std::size_t>(cell)];
