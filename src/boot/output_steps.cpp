@@ -60,7 +60,7 @@ Result<void> open_outputs(RobotState& state) {
   if (!options.recording.empty()) {
     // Pictures of people are personal data.
     const bool images = options.record_images || !state.setup.config.person.enabled();
-    if (!images) state.report.notes.push_back("the recording leaves the images out: --record-images keeps them");
+    if (!images) state.report.notes.emplace_back("the recording leaves the images out: --record-images keeps them");
     auto recording = sinks::RecordingSink::create(options.recording, images);
     if (!recording) return tl::unexpected(recording.error());
     outputs.sinks.add(std::move(*recording));
