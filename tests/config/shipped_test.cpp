@@ -160,7 +160,7 @@ TEST(Listing, DiffNamesBothValuesAndTheirOrigins) {
   const std::string text = diff_text(*lamp, Robot());
   EXPECT_THAT(text,
               testing::ContainsRegex("task.lamp.max_pose_loss_s = 4 \\(.*lamp.toml:[0-9]+\\), 2 \\(default\\)\n"));
-  EXPECT_THAT(text, testing::HasSubstr("40 of "));
+  EXPECT_THAT(text, testing::HasSubstr("41 of "));
   EXPECT_THAT(diff_text(*lamp, *lamp), testing::StartsWith("0 of "));
 }
 
