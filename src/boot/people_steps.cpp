@@ -18,7 +18,8 @@ Result<void> load_people(RobotState& state) {
   if (!identities) return tl::unexpected(identities.error());
   if (identities->people.empty()) {
     return fail(
-        fmt::format("{}: nobody is enrolled; cgsr people enroll NAME --input IMAGES does it", config.identities));
+        fmt::format("{}: nobody is enrolled; cgsr people enroll --identities FILE --name NAME --input IMAGES does it",
+                    config.identities));
   }
   state.report.notes.push_back(fmt::format("people: {} enrolled", identities->people.size()));
   state.vision.people = person::gallery_of(*identities, config.identifier.match);
