@@ -84,11 +84,14 @@ std::string line_of(std::string_view name, const ImageReport&, const runtime::Ag
   return line;
 }
 
+constexpr double kLeastShown_us = 2.0;
+
 std::string stage_times(const runtime::FrameRecord& record, const runtime::Schedule& schedule) {
   std::string line = "stages, us:";
   for (std::size_t i = 0; i < schedule.rows().size(); ++i) {
-    line +=
-        fmt::format("  {} {:.0f}", schedule.rows()[i].name, static_cast<double>(record.stages[i].elapsed_ns) * 1e-3);
+    const double elapsed_us = static_cast<double>(record.stages[i].elapsed_ns) * 1e-3;
+    // A stage that a robot has not, or that had no turn: the line is short.
+    if (elapsed_us >= kLeastShown_us) line += fmt::format("  {} {:.0f}", schedule.rows()[i].name, elapsed_us);
   }
   return line;
 }
