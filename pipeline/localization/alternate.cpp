@@ -145,7 +145,11 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
       // The map's error is the same for each image and another for each thing in it: from near, it is what is seen.
       const double depth_m = std::max(kLeastDepth_m, 0.5 * static_cast<double>(piece.depth0_m + piece.depth1_m));
       const double map_px = camera_.fx_px * map_sigma_m_ / depth_m;
-      line.sigma_px = std::sqrt(system + map_px * map_px + static_cast<double>(edge.sigma_px) * edge.sigma_px);
+      // Of two lines that lie close beside each other the match may have taken the wrong one.
+      const double rival_px =
+          match.rival_px < Match::kNoRival ? parameters_.rival_share * static_cast<double>(match.rival_px) : 0.0;
+      line.sigma_px = std::sqrt(system + rival_px * rival_px + map_px * map_px +
+                                static_cast<double>(edge.sigma_px) * edge.sigma_px);
     }
     line.p_W = view_.point_at(piece, match.from_px);
     lines_.push_back(line);

@@ -69,6 +69,8 @@ struct Correction {
   float explained = 0.0F;  ///< share of the expected visible length that was found, 0..1.
   float lead = 0.0F;       ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
   float evidence = 0.0F;   ///< what the gate judged (gate.h).
+  float error_log_odds =
+      0.0F;  ///< that a searched pose is more than 5 cm or 1.5 degrees off (log_odds_of_error); 0 when tracking.
   float prior_chi2 = 0.0F;
   int segments = 0;  ///< perceived.
   int expected = 0;  ///< visible pieces of edges.

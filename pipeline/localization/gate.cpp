@@ -10,6 +10,9 @@
 namespace cgsr::localization {
 namespace {
 
+constexpr double kLeastSigma_m = 1e-4;
+constexpr double kLeastSigma_deg = 1e-3;
+
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
@@ -42,6 +45,17 @@ float evidence_of(const Estimate& estimate, const Standing& standing, const Gate
          static_cast<float>(parameters.choice_weight) * static_cast<float>(std::log(std::max(1.0, standing.cells)));
 }
 
+double log_odds_of_error(const Estimate& estimate, const Standing& standing, const GateParameters& parameters) {
+  const geometry::Matrix6d covariance = covariance_in_map(estimate);
+  const double sigma_m = std::max(kLeastSigma_m, worst_sigma(covariance.topLeftCorner<3, 3>()));
+  const double sigma_deg =
+      std::max(kLeastSigma_deg, worst_sigma(covariance.bottomRightCorner<3, 3>()) * 180.0 / std::numbers::pi);
+  const double lead = std::min(static_cast<double>(standing.lead), parameters.max_lead);
+  return parameters.error_log_odds + parameters.error_per_ln_m * std::log(sigma_m) +
+         parameters.error_per_ln_deg * std::log(sigma_deg) + parameters.error_per_px * estimate.solution.rms_px -
+         parameters.error_per_lead * lead;
+}
+
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters) {
   const GateParameters& decision = parameters.decision;
@@ -69,6 +83,8 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
   const double max_sigma_rad = parameters.max_sigma_deg * std::numbers::pi / 180.0;
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= max_sigma_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= max_sigma_rad))
+    return Reason::kUncertain;
+  if (!standing->narrow && !(log_odds_of_error(estimate, *standing, decision) <= decision.max_error_log_odds))
     return Reason::kUncertain;
   return Reason::kNone;
 }

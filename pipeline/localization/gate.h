@@ -30,6 +30,10 @@ bool same_answer(const geometry::Pose& a, const geometry::Pose& b, const GatePar
 /// far it is from the prior and how many poses there were to choose from: among many one fits by accident.
 float evidence_of(const Estimate& estimate, const Standing& standing, const GateParameters& parameters);
 
+/// The log-odds that a pose that a search found is more than 5 cm or 1.5 degrees off: from its stated standard deviations, the residual of its
+/// matches and its lead. Ours: a logistic regression over the poses of generated homes (README.md has the counts).
+double log_odds_of_error(const Estimate& estimate, const Standing& standing, const GateParameters& parameters);
+
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
 /// Ours: Alg. 4.1 has no gate.
 /// \param standing  none: the pose was followed from a narrow prior. How uncertain it may be then is the tracker's to say.

@@ -43,6 +43,12 @@ struct GateParameters {
   double min_sigma_ratio = 0.3;
   double sigma_ratio_per_evidence = 2.5;
   double max_sigma_ratio = 1.2;
+  double error_log_odds = 1.55;
+  double error_per_ln_m = 1.2;
+  double error_per_ln_deg = 0.97;
+  double error_per_px = 4.3;
+  double error_per_lead = 8.65;
+  double max_error_log_odds = -2.5;
   double same_m = 0.05;
   double same_deg = 1.5;
   int min_expected = 3;
@@ -66,6 +72,7 @@ struct GateParameters {
     visit.number("sigma_ratio_per_evidence", self.sigma_ratio_per_evidence, {0.0, 100.0}, "",
                  "The growth of that share per unit of evidence above min_evidence.");
     visit.number("max_sigma_ratio", self.max_sigma_ratio, {0.0, 10.0}, "", "That share does not grow beyond this.");
+    describe_error(self, visit);
     visit.number("same_m", self.same_m, {0.0, 1.0}, "m",
                  "Two poses are the same answer when they are at most this far apart and turned by at most same_deg.");
     visit.number("same_deg", self.same_deg, {0.0, 45.0}, "deg",
@@ -75,6 +82,24 @@ struct GateParameters {
     visit.number("min_tracking_expected", self.min_tracking_expected, {0, 1000}, "",
                  "The gate requires at least this many expected edges and matches when tracking from a narrow prior; "
                  "that holds what they leave open.");
+  }
+
+ private:
+  template <class Self, class Visitor>
+  static void describe_error(Self& self, Visitor& visit) {
+    visit.number("error_log_odds", self.error_log_odds, {-100.0, 100.0}, "",
+                 "The natural log-odds that a searched pose is more than 5 cm or 1.5 degrees off, where its standard "
+                 "deviations are 1 m and 1 degree, and its residual and lead are 0.");
+    visit.number("error_per_ln_m", self.error_per_ln_m, {0.0, 100.0}, "",
+                 "The growth of these log-odds per natural logarithm of the standard deviation of the position.");
+    visit.number("error_per_ln_deg", self.error_per_ln_deg, {0.0, 100.0}, "",
+                 "The growth of these log-odds per natural logarithm of the standard deviation of the rotation.");
+    visit.number("error_per_px", self.error_per_px, {0.0, 100.0}, "1/px",
+                 "The growth of these log-odds per pixel of the matches' root mean square.");
+    visit.number("error_per_lead", self.error_per_lead, {0.0, 100.0}, "",
+                 "The decrease of these log-odds per unit of lead over the next hypothesis.");
+    visit.number("max_error_log_odds", self.max_error_log_odds, {-100.0, 100.0}, "",
+                 "The gate accepts at most these log-odds of an error after a search.");
   }
 };
 
@@ -134,6 +159,7 @@ struct LocalizerParameters {
   double max_view_shift_px = 6.0;
   double system_sigma_px = 0.9;
   double map_sigma_m = 0.005;
+  double rival_share = 0.5;
   double max_match_angle_deg = 12.0;
   double max_match_radius_px = 24.0;
   double min_match_radius_px = 4.0;
@@ -192,6 +218,9 @@ struct LocalizerParameters {
     visit.number(
         "system_sigma_px", self.system_sigma_px, {0.05, 20.0}, "px",
         "The standard deviation of the error of camera and map in the image, in addition to that of the segment.");
+    visit.number("rival_share", self.rival_share, {0.0, 10.0}, "",
+                 "The standard deviation of a match that may be the wrong one of two parallel lines, as a share of the "
+                 "distance between them.");
     visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
                  "The standard deviation of positions in the map, for every match and for every pose.");
     visit.number("max_match_angle_deg", self.max_match_angle_deg, {1.0, 45.0}, "deg",

@@ -10,6 +10,14 @@ namespace {
 constexpr float kMostTaken = 0.3F;          // share of an overlap that a more confident match may hold already
 constexpr float kSameLine_px = 3.0F;        // pieces of one broken edge lie along one line
 constexpr std::size_t kCandidatesEach = 6;  // per expected edge, on average
+constexpr float kRivalOverlap = 0.3F;       // of a match, along which a rival lies
+constexpr float kLeastRival_px = 0.4F;      // nearer it is the same line
+
+// How far off the expected edge a matched line lies: positive along the expected edge's own normal.
+float line_of(const Match& match, std::span<const ProjectedPiece> expected, const SegmentTable& perceived) {
+  const bool along = expected[match.projected].direction.dot(perceived.edges()[match.perceived].direction) > 0.0F;
+  return (along ? 0.5F : -0.5F) * (match.d1_px + match.d2_px);
+}
 
 }  // namespace
 
@@ -118,6 +126,21 @@ void Matcher::find_candidates(std::uint32_t index, const ProjectedPiece& piece, 
   }
 }
 
+void Matcher::note_rival(const Match& left_out, float line_px, std::span<const ProjectedPiece> expected,
+                         const SegmentTable& perceived) {
+  for (Match& match : matches_) {
+    const bool one_expected = match.projected == left_out.projected;
+    if (one_expected == (match.perceived == left_out.perceived)) continue;  // neither edge, or the pair itself
+    const float common = one_expected
+                             ? std::min(match.to_px, left_out.to_px) - std::max(match.from_px, left_out.from_px)
+                             : std::min(match.to_on_perceived_px, left_out.to_on_perceived_px) -
+                                   std::max(match.from_on_perceived_px, left_out.from_on_perceived_px);
+    if (common < kRivalOverlap * match.overlap_px()) continue;
+    const float gap = std::abs(line_px - line_of(match, expected, perceived));
+    if (gap > kLeastRival_px) match.rival_px = std::min(match.rival_px, gap);
+  }
+}
+
 std::span<const Match> Matcher::match(std::span<const ProjectedPiece> expected, const SegmentTable& perceived,
                                       const MatchingRules& rules) {
   candidates_.clear();
@@ -143,12 +166,14 @@ std::span<const Match> Matcher::match(std::span<const ProjectedPiece> expected, 
     Taken& mine = of_expected_[match.projected];
     Taken& its = of_perceived_[match.perceived];
     if (mine.count == kPieces || its.count == kPieces) continue;
-    const bool along = expected[match.projected].direction.dot(perceived.edges()[match.perceived].direction) > 0.0F;
-    const float line = (along ? 0.5F : -0.5F) * (match.d1_px + match.d2_px);
+    const float line = line_of(match, expected, perceived);
     const float overlap = match.overlap_px();
-    if (mine.count > 0 && std::abs(line - line_of_expected_[match.projected]) > kSameLine_px) continue;
-    if (taken_of(mine, match.from_px, match.to_px) > kMostTaken * overlap) continue;
-    if (taken_of(its, match.from_on_perceived_px, match.to_on_perceived_px) > kMostTaken * overlap) continue;
+    if ((mine.count > 0 && std::abs(line - line_of_expected_[match.projected]) > kSameLine_px) ||
+        taken_of(mine, match.from_px, match.to_px) > kMostTaken * overlap ||
+        taken_of(its, match.from_on_perceived_px, match.to_on_perceived_px) > kMostTaken * overlap) {
+      note_rival(match, line, expected, perceived);
+      continue;
+    }
     if (mine.count == 0) line_of_expected_[match.projected] = line;
     take(mine, match.from_px, match.to_px);
     take(its, match.from_on_perceived_px, match.to_on_perceived_px);

@@ -31,6 +31,9 @@ struct Match {
       0.0F;  ///< from the perceived line to the expected edge at both ends of the overlap; positive along the line's normal.
   float d2_px = 0.0F;
   float confidence = 0.0F;
+  float rival_px = kNoRival;  ///< to the nearest other line that one of the two could have been matched with instead.
+
+  static constexpr float kNoRival = 1e6F;
 
   [[nodiscard]] float overlap_px() const { return to_px - from_px; }
   [[nodiscard]] float effective_distance_px() const;
@@ -58,6 +61,9 @@ class Matcher {
     float to[kPieces];
     std::uint32_t count = 0;
   };
+  /// A pair that was left out because a more confident one holds its edges says that this one may be the wrong one of two.
+  void note_rival(const Match& left_out, float line_px, std::span<const ProjectedPiece> expected,
+                  const SegmentTable& perceived);
   static float taken_of(const Taken& taken, float from, float to);
   static void take(Taken& taken, float from, float to);
 

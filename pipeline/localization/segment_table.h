@@ -55,6 +55,11 @@ class SegmentTable {
   [[nodiscard]] const float* half_length() const { return half_length_.data(); }
 
  private:
+  /// \return how many edges run beside one, close by and along half of it: slats, folds, the backs of books. At most kMostBeside.
+  [[nodiscard]] int beside(std::size_t index) const;
+
+  static constexpr int kMostBeside = 10;
+
   std::size_t capacity_;
   std::vector<PerceivedEdge> added_;
   std::vector<PerceivedEdge> sorted_;

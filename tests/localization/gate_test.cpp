@@ -62,6 +62,33 @@ TEST(Gate, AsksForMoreEvidenceTheWiderASearchedPoseIs) {
   EXPECT_EQ(judged(known_to(0.06, 0.45F), few_starts), Reason::kNone) << "the prior was right before";
 }
 
+// Nothing but the evidence says that it is the right one of several; how exact it is, its sigmas, its residual and its lead say.
+TEST(Gate, RefusesASearchedPoseThatIsLikelyToBeOff) {
+  Estimate estimate = good();
+  estimate.agreement_on_map = 0.9F;
+  estimate.solution.information = geometry::Matrix6d::Identity();
+  estimate.solution.information.topLeftCorner<3, 3>() *= 1.0 / (0.04 * 0.04);
+  estimate.solution.information.bottomRightCorner<3, 3>() *= 1.0 / (0.02 * 0.02);
+  Standing standing{0.05F, 2.0};
+  EXPECT_EQ(judged(estimate, standing), Reason::kUncertain);
+  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kNone) << "how uncertain a followed one may be is the tracker's";
+  standing.narrow = true;
+  EXPECT_EQ(judged(estimate, standing), Reason::kNone);
+  const GateParameters parameters;
+  const Standing wide{0.05F, 2.0};
+  const double odds = log_odds_of_error(estimate, wide, parameters);
+  EXPECT_GT(odds, parameters.max_error_log_odds);
+  EXPECT_LT(log_odds_of_error(estimate, {0.25F, 2.0}, parameters), odds) << "ahead of all others";
+  EXPECT_EQ(log_odds_of_error(estimate, {1.0F, 2.0}, parameters), log_odds_of_error(estimate, {0.3F, 2.0}, parameters))
+      << "no lead counts for more than max_lead";
+  Estimate closer = estimate;
+  closer.solution.rms_px = 0.2;
+  EXPECT_LT(log_odds_of_error(closer, wide, parameters), odds);
+  Estimate surer = estimate;
+  surer.solution.information *= 16.0;
+  EXPECT_LT(log_odds_of_error(surer, wide, parameters), odds);
+}
+
 TEST(Gate, NamesWhatIsMissing) {
   Estimate estimate = good();
   estimate.expected = 1;

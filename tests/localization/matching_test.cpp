@@ -66,6 +66,26 @@ TEST_F(Matching, MeasuresTheFourPropertiesOfFigure43) {
   EXPECT_NEAR(found[0].effective_distance_px(), 2.5F, 0.02F);
 }
 
+// The two borders of a gap: which of them the expected edge is, its distance alone says.
+TEST_F(Matching, RemembersTheLineThatItCouldHaveBeenInstead) {
+  const auto of_gap =
+      match({expected(100, 100, 200, 100)}, {perceived(110, 100.5F, 190, 100.5F), perceived(110, 103, 190, 103)});
+  ASSERT_EQ(of_gap.size(), 1U);
+  EXPECT_EQ(of_gap[0].perceived, 0U);
+  EXPECT_NEAR(of_gap[0].rival_px, 2.5F, 0.01F);
+  const auto of_two_expected =
+      match({expected(100, 100, 200, 100), expected(100, 98, 200, 98)}, {perceived(110, 100.5F, 190, 100.5F)});
+  ASSERT_EQ(of_two_expected.size(), 1U);
+  EXPECT_NEAR(of_two_expected[0].rival_px, 2.0F, 0.01F);
+  const auto alone = match({expected(100, 100, 200, 100)}, {perceived(110, 100.5F, 190, 100.5F)});
+  ASSERT_EQ(alone.size(), 1U);
+  EXPECT_EQ(alone[0].rival_px, Match::kNoRival);
+  const auto broken =
+      match({expected(100, 100, 200, 100)}, {perceived(100, 101, 140, 101), perceived(150, 101, 200, 101)});
+  ASSERT_EQ(broken.size(), 2U);
+  EXPECT_EQ(broken[0].rival_px, Match::kNoRival) << "two pieces of one line are no rivals";
+}
+
 TEST_F(Matching, ThatIsTooFarTooOblicOrBesideIsNone) {
   EXPECT_EQ(match({expected(100, 100, 200, 100)}, {perceived(100, 130, 200, 130)}).size(), 0U) << "distance";
   EXPECT_EQ(match({expected(100, 100, 200, 100)}, {perceived(100, 90, 200, 120)}).size(), 0U) << "angle";
