@@ -30,10 +30,13 @@ class LineAccess {
  public:
   virtual ~LineAccess() = default;
 
-  /// Requests the line; an output is driven off from the first moment. \return a number for it, counted from 0.
+  /// Requests the line; an output is driven off from the first moment. \return a number for it, the lowest that is free, from 0.
   virtual Result<int> request(const LineWish& wish) = 0;
   virtual int set(int line, bool on) = 0;
   virtual int read(int line, bool& on) = 0;
+
+  /// Gives one line back: its number may be given again.
+  virtual void release(int line) = 0;
 
   /// Gives every line back. What an output does then is up to its chip.
   virtual void release_all() = 0;

@@ -94,8 +94,14 @@ class GpiodLines final : public LineAccess {
       return fail(fmt::format("line '{}' cannot be requested ({}){}", wish.name, words(error),
                               user.empty() ? "" : ": '" + user + "' uses it"));
     }
-    lines_.push_back(std::move(*found));
-    return static_cast<int>(lines_.size()) - 1;
+    const auto free = std::find_if(lines_.begin(), lines_.end(), [](const Found& held) { return !held.chip; });
+    const auto number = free - lines_.begin();
+    if (free == lines_.end()) {
+      lines_.push_back(std::move(*found));
+    } else {
+      *free = std::move(*found);
+    }
+    return static_cast<int>(number);
   }
 
   int set(int line, bool on) override {
@@ -109,8 +115,15 @@ class GpiodLines final : public LineAccess {
     return 0;
   }
 
+  void release(int line) override {
+    Found& found = lines_[static_cast<std::size_t>(line)];
+    if (!found.chip) return;
+    gpiod_line_release(found.line);
+    found = {};
+  }
+
   void release_all() override {
-    for (auto& found : lines_) gpiod_line_release(found.line);
+    for (std::size_t i = 0; i < lines_.size(); ++i) release(static_cast<int>(i));
     lines_.clear();
   }
 

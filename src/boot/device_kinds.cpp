@@ -131,7 +131,7 @@ Made<hal::Switches> gpiod_switches(const DeviceContext& context) {
   };
   add(named.arming_line, false, named.gpiod.arming_active_low);
   for (std::size_t i = 0; i < stages::kLampLines; ++i) add(named.lamps()[i], true, named.gpiod.lamps()[i]);
-  return std::make_unique<hal::gpiod::GpiodSwitches>(std::move(wishes), hal::gpiod::make_line_access());
+  return std::make_unique<hal::gpiod::GpiodSwitches>(std::move(wishes), hal::gpiod::make_line_access(), context.clock);
 }
 
 using SwitchesFactory = Factory<config::SwitchesKind, std::unique_ptr<hal::Switches>>;

@@ -81,7 +81,7 @@ class LiveLoops {
     while (!stop_.requested()) {
       look.wait();
       advance_simulation();
-      if (const auto problem = switches_.step()) spdlog::error("switches: {}", *problem);
+      if (const auto news = switches_.step()) spdlog::warn("switches: {}", *news);
     }
   }
 

@@ -16,10 +16,10 @@ std::optional<std::string> SwitchTask::watch_arming() {
   if (lines_.arming.empty()) return std::nullopt;
   const auto level = switches_.read(lines_.arming);
   if (!level) {
-    const bool news = level_.value_or(true);
-    level_ = false;
-    if (!news) return std::nullopt;
-    static_cast<void>(links_.arm_requests.push(ArmRequest::kDisarm));
+    level_.reset();
+    // A request that finds no room is repeated at the next look.
+    if (silent_ || !links_.arm_requests.push(ArmRequest::kDisarm)) return std::nullopt;
+    silent_ = true;
     return level.error().message;
   }
   if (level_ && *level_ != *level) {
@@ -27,7 +27,8 @@ std::optional<std::string> SwitchTask::watch_arming() {
     if (!links_.arm_requests.push(*level ? ArmRequest::kArm : ArmRequest::kDisarm)) return std::nullopt;
   }
   level_ = *level;
-  return std::nullopt;
+  if (!std::exchange(silent_, false)) return std::nullopt;
+  return fmt::format("line '{}' answers again: it arms when it is switched off and on", lines_.arming);
 }
 
 void SwitchTask::switch_lamp(const stages::SwitchRequest& request) {

@@ -21,13 +21,14 @@ struct SwitchLines {
 };
 
 /// Watches the arming line, whose edges are requests to arm and disarm, and switches lamps as vision asks, acknowledging each with the time at which it
-/// was done. Not real-time: a line may block for milliseconds.
+/// was done. A line that does not answer disarms; one that answers again is as at boot: its level does not arm, its next rising edge does. Not real-time: a
+/// line may block for milliseconds.
 class SwitchTask {
  public:
   SwitchTask(hal::Switches& switches, SwitchLines lines, const Clock& clock, Links& links)
       : switches_(switches), lines_(std::move(lines)), clock_(clock), links_(links) {}
 
-  /// \return what is wrong with the arming line, when it does not answer; the robot is disarmed then.
+  /// \return what there is to report of the arming line, once each: it does not answer and the robot is disarmed, or it answers again.
   std::optional<std::string> step();
 
  private:
@@ -38,7 +39,8 @@ class SwitchTask {
   SwitchLines lines_;
   const Clock& clock_;
   Links& links_;
-  std::optional<bool> level_;  // nothing yet: a switch that is on at boot does not arm, its edge does
+  std::optional<bool> level_;  // nothing: not read since boot or since it was silent, its edges alone count
+  bool silent_ = false;
 };
 
 /// \return an error that names each configured line that does not exist, beside those that do.

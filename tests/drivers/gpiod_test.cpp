@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "hal/gpiod/gpiod_switches.h"
+#include "platform/clock.h"
 #include "tests/hal/case_name.h"
 #include "tests/hal/switches_contract.h"
 
@@ -25,7 +26,10 @@ struct ScriptedChip {
   std::map<std::string, bool> level;  ///< electrical, by line.
   std::string broken;                 ///< this line does not answer.
   std::string missing;                ///< there is no such line.
-  int requested = 0;
+  bool gone = false;                  ///< unplugged: no line is there, and those that are held answer no more for ever.
+  int requested = 0;                  ///< lines that are held.
+  int attempts = 0;                   ///< requests, granted or not.
+  SimulatedClock clock;
 };
 
 class ScriptedLines final : public LineAccess {
@@ -33,32 +37,47 @@ class ScriptedLines final : public LineAccess {
   explicit ScriptedLines(ScriptedChip& chip) : chip_(chip) {}
 
   Result<int> request(const LineWish& wish) override {
-    if (wish.name == chip_.missing) return fail("there is no line '" + wish.name + "'");
-    lines_.push_back(wish);
+    ++chip_.attempts;
+    if (wish.name == chip_.missing || chip_.gone) return fail("there is no line '" + wish.name + "'");
+    int number = 0;
+    while (lines_.count(number) != 0) ++number;
+    lines_[number] = {wish};
     ++chip_.requested;
     if (wish.output) chip_.level[wish.name] = wish.active_low;
-    return static_cast<int>(lines_.size()) - 1;
+    return number;
   }
-  int set(int line, bool on) override {
-    const auto& wish = lines_.at(static_cast<std::size_t>(line));
-    if (wish.name == chip_.broken) return EIO;
+  int set(int number, bool on) override {
+    const LineWish& wish = held(number).wish;
+    if (const int error = problem(number); error != 0) return error;
     chip_.level[wish.name] = on != wish.active_low;
     return 0;
   }
-  int read(int line, bool& on) override {
-    const auto& wish = lines_.at(static_cast<std::size_t>(line));
-    if (wish.name == chip_.broken) return EIO;
+  int read(int number, bool& on) override {
+    const LineWish& wish = held(number).wish;
+    if (const int error = problem(number); error != 0) return error;
     on = chip_.level[wish.name] != wish.active_low;
     return 0;
   }
+  void release(int number) override { chip_.requested -= static_cast<int>(lines_.erase(number)); }
   void release_all() override {
     chip_.requested = 0;
     lines_.clear();
   }
 
  private:
+  struct Held {
+    LineWish wish;
+    bool dead = false;  ///< of a chip that was unplugged.
+  };
+  Held& held(int number) { return lines_.at(number); }
+  int problem(int number) {
+    Held& line = held(number);
+    line.dead = line.dead || chip_.gone;
+    return line.dead ? ENODEV : line.wish.name == chip_.broken ? EIO : 0;
+  }
+
   ScriptedChip& chip_;
-  std::vector<LineWish> lines_;
+  std::map<int, Held> lines_;
 };
 
 std::vector<LineWish> three_lines(bool active_low) {
@@ -69,7 +88,8 @@ SwitchesRig scripted_lines(bool active_low) {
   auto chip = std::make_shared<ScriptedChip>();
   for (const char* name : {"lamp_left", "lamp_right", "arm"}) chip->level[name] = active_low;
   SwitchesRig rig;
-  rig.switches = std::make_unique<GpiodSwitches>(three_lines(active_low), std::make_unique<ScriptedLines>(*chip));
+  rig.switches =
+      std::make_unique<GpiodSwitches>(three_lines(active_low), std::make_unique<ScriptedLines>(*chip), chip->clock);
   rig.level = [chip, active_low](std::string_view name) { return chip->level[std::string(name)] != active_low; };
   rig.press = [chip, active_low](std::string_view name, bool on) { chip->level[std::string(name)] = on != active_low; };
   rig.world = chip;
@@ -83,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(Gpiod, SwitchesContract,
 
 struct GpiodFault : testing::Test {
   ScriptedChip chip;
-  GpiodSwitches lines{three_lines(false), std::make_unique<ScriptedLines>(chip)};
+  GpiodSwitches lines{three_lines(false), std::make_unique<ScriptedLines>(chip), chip.clock};
 };
 
 TEST_F(GpiodFault, ALineThatDoesNotAnswerIsNamedAndEveryOtherGoesOff) {
@@ -116,10 +136,81 @@ TEST_F(GpiodFault, WhenOneLineIsMissingNoneIsKept) {
   EXPECT_TRUE(lines.start());
 }
 
+TEST_F(GpiodFault, AChipThatGoesAwayAndComesBackIsRequestedAgain) {
+  ASSERT_TRUE(lines.start());
+  ASSERT_TRUE(lines.set("lamp_left", true));
+  chip.gone = true;
+  const auto read = lines.read("arm");
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("arm"), std::string::npos);
+  EXPECT_EQ(chip.requested, 0) << "a line that is held keeps the chip's number";
+  chip.clock.advance(gpiod::kLineWait);
+  EXPECT_FALSE(lines.read("arm"));
+  chip.gone = false;
+  EXPECT_FALSE(lines.read("arm")) << "too soon after the last request";
+  chip.level["arm"] = true;
+  chip.clock.advance(gpiod::kLineWait);
+  EXPECT_TRUE(lines.read("arm").value());
+}
+
+TEST_F(GpiodFault, LinesThatAreGoneAreRequestedAtABoundedRate) {
+  ASSERT_TRUE(lines.start());
+  chip.gone = true;
+  const int before = chip.attempts;
+  for (int look = 0; look < 200; ++look) {  // as the switch worker does, every 50 ms for 10 s
+    EXPECT_FALSE(lines.read("arm"));
+    chip.clock.advance(seconds(0.05));
+  }
+  EXPECT_GE(chip.attempts - before, 15);
+  EXPECT_LE(chip.attempts - before, 20);
+}
+
+TEST_F(GpiodFault, AnOutputThatWasGoneSaysSoBeforeItIsUsedAgain) {
+  ASSERT_TRUE(lines.start());
+  ASSERT_TRUE(lines.set("lamp_left", true));
+  chip.gone = true;
+  EXPECT_FALSE(lines.read("arm"));
+  chip.gone = false;
+  chip.level["lamp_left"] = false;  // without power
+  chip.clock.advance(gpiod::kLineWait);
+  EXPECT_TRUE(lines.read("arm"));
+  EXPECT_FALSE(lines.read("lamp_left").value());
+  EXPECT_FALSE(lines.set("lamp_left", true)) << "whoever took it for lit has to hear of it";
+  EXPECT_FALSE(chip.level["lamp_left"]);
+  chip.clock.advance(gpiod::kLineWait);
+  EXPECT_TRUE(lines.set("lamp_left", true));
+  EXPECT_TRUE(chip.level["lamp_left"]);
+}
+
+TEST_F(GpiodFault, OneLineThatFailsLeavesTheOthersHeld) {
+  ASSERT_TRUE(lines.start());
+  chip.level["arm"] = true;
+  chip.broken = "lamp_right";
+  EXPECT_FALSE(lines.set("lamp_right", true));
+  EXPECT_EQ(chip.requested, 2);
+  EXPECT_TRUE(lines.read("arm").value());
+  EXPECT_TRUE(lines.set("lamp_left", true));
+  chip.broken.clear();
+  chip.clock.advance(gpiod::kLineWait);
+  EXPECT_TRUE(lines.set("lamp_right", true));
+}
+
+TEST_F(GpiodFault, StopAndStartWhileTheChipIsGone) {
+  ASSERT_TRUE(lines.start());
+  chip.gone = true;
+  EXPECT_FALSE(lines.read("arm"));
+  lines.stop();
+  EXPECT_FALSE(lines.start());
+  chip.gone = false;
+  ASSERT_TRUE(lines.start());
+  EXPECT_TRUE(lines.set("lamp_left", true));
+}
+
 TEST(GpiodKernel, SaysWhatIsWrongWithALine) {
   for (const auto& [name, expected] : std::map<std::string, std::string>{
            {"no such line", "there is no line"}, {"gpiochip99:1", "gpiochip99"}, {"gpiochip0:x", "CHIP:OFFSET"}}) {
-    GpiodSwitches lines({{name}}, gpiod::make_line_access());
+    const RealClock clock;
+    GpiodSwitches lines({{name}}, gpiod::make_line_access(), clock);
     const auto started = lines.start();
     ASSERT_FALSE(started) << name;
     EXPECT_NE(started.error().message.find(expected), std::string::npos) << started.error().message;

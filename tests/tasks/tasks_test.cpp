@@ -98,6 +98,24 @@ TEST_F(SwitchTaskOf, ALineThatDoesNotAnswerDisarmsOnceAndIsNamed) {
   ASSERT_TRUE(problem_);
   EXPECT_NE(problem_->find("arm"), std::string::npos) << *problem_;
   EXPECT_EQ(after_step(), std::nullopt);
+  EXPECT_EQ(problem_, std::nullopt);
+}
+
+TEST_F(SwitchTaskOf, ALineThatAnswersAgainArmsByItsNextEdgeOnly) {
+  after_step();
+  switches_.stop();
+  after_step();
+  ASSERT_TRUE(switches_.start());
+  switches_.press("arm", true);
+  EXPECT_EQ(after_step(), std::nullopt);
+  ASSERT_TRUE(problem_);
+  EXPECT_NE(problem_->find("answers again"), std::string::npos) << *problem_;
+  EXPECT_EQ(after_step(), std::nullopt);
+  EXPECT_EQ(problem_, std::nullopt);
+  switches_.press("arm", false);
+  EXPECT_EQ(after_step(), ArmRequest::kDisarm);
+  switches_.press("arm", true);
+  EXPECT_EQ(after_step(), ArmRequest::kArm);
 }
 
 }  // namespace
