@@ -1,24 +1,25 @@
 # The runs of tools/hil by name. Sourced. CGSR_HIL_REPEAT says how often each fault, CGSR_HIL_FAULTS which ones.
 
 # run_hil NAME LONG
-#   timing    images of the scenario from memory; deadlines count
+#   timing    images of the scenario from memory, for a minute (where the scenario is shorter, its last image stands); deadlines count
 #   function  the first image stands, so that the robot always has something to follow; faults come
 run_hil() {
-  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene=sim-home-start play_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb=1024
+  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene=sim-home-start play_s=60 scene_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb=1024 spent
+  spent=$(processor_s)
   case "$name" in
     package) run_package; return ;;
     power_cut) run_power_cut $((long == 1 ? 10 : 3)); return ;;
     devices | webcam) ;;
     short) limit_s=300 ;;
     profile) ;;
-    follow) scene=sim-home play_s=45 script=timing robot=sim-home camera=loopback ;;
+    follow) scene=sim-home scene_s=45 script=timing robot=sim-home camera=loopback ;;
     round) scene=sim-home-round robot=sim-home-round script=timing camera=loopback ;;
     lamp) scene=sim-home-lamp robot=sim-home-lamp script=timing camera=loopback ;;
     faults) limit_s=7200; [ "$long" = 0 ] || repeat=10 ;;
     kill) repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
     *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill, power_cut)" ;;
   esac
-  if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$play_s"; fi
+  if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$scene_s"; fi
   repeat="${CGSR_HIL_REPEAT:-$repeat}"
   local images="$hil/scenes/$scene/images.yuyv"
   memory_mb=$((memory_mb + $(stat -c %s "$images") / 1000000))
@@ -27,9 +28,12 @@ run_hil() {
   local code=0
   ICOUNT="${CGSR_HIL_ICOUNT:-1}" IMAGES="$images" MEMORY_MB="$memory_mb" LIMIT_S="${CGSR_HIL_LIMIT_S:-$limit_s}" bash "$guest/boot.sh" "$hil" "$job" || code=$?
   python3 "$root/tests/hil/evaluate.py" "$name" "$job" --job-code "$code" --scene "$hil/scenes/$scene" || code=1
-  say "$name took $((SECONDS - start)) s"
+  say "$name took $((SECONDS - start)) s, $(($(processor_s) - spent)) s of processor time; $(guest_times "$job/console.txt")"
   return "$code"
 }
+
+# What the guest spent its time on: until the job starts, and all of it.
+guest_times() { awk '/^job starts at/ {start = $4} /^job ends with/ {end = $6} END {printf "guest: %s s to the job, %s s in all", start, end}' "$1"; }
 
 # The package in the guest's root file system: install, upgrade, remove, purge.
 run_package() {
@@ -57,6 +61,16 @@ run_power_cut() {
   python3 "$root/tests/hil/evaluate.py" power_cut "$job" --job-code "$code" --cuts "$count" --whole "$whole"
 }
 
+# When the arming switch is pressed in the scenario of config/robots/NAME.toml, s.
+arming_s() {
+  python3 - "config/robots/$1.toml" <<'PYTHON'
+import pathlib, sys, tomllib
+robot = pathlib.Path(sys.argv[1])
+scenario = tomllib.loads((robot.parent / tomllib.loads(robot.read_text())["sim"]["scenario"]).read_text())
+print(next(event["from_s"] for event in scenario["line_event"] if event["line"] == "arming"))
+PYTHON
+}
+
 prepare_job() {
   local job="$1" script="$2" robot="$3" camera="$4" play_s="$5" repeat="$6" count="$7"
   rm -rf "$job"
@@ -67,6 +81,7 @@ prepare_job() {
   case "$script" in
     devices | webcam) ;;  # the package as it was installed
     timing)
+      echo "ARM_AFTER=$(arming_s "$robot")" >>"$job/env"
       mkdir -p "$job/root/usr/share/cgsr-hil"
       cp -r config "$job/root/usr/share/cgsr-hil/"
       sed "s|@ROBOT@|/usr/share/cgsr-hil/config/robots/$robot.toml|" "$root/tests/hil/robots/timing.toml" >"$job/root/etc/cgsr/robot.toml" ;;
