@@ -24,7 +24,8 @@ arguments+=(-append "console=ttyS0 panic=-1 quiet net.ifnames=0 nokaslr norandma
 status=0
 timeout "${LIMIT_S:-300}" qemu-system-x86_64 "${arguments[@]}" || status=$?
 if [ ! -e "$job/code" ]; then
-  echo "the guest did not finish (QEMU's exit code $status; the limit is ${LIMIT_S:-300} s)" >&2
+  spent="$(awk '{printf "%d", ($16 + $17) / 100}' "/proc/$$/stat")"
+  echo "the guest did not finish (QEMU's exit code $status; the limit is ${LIMIT_S:-300} s, of which it got $spent s of processor time)" >&2
   exit 1
 fi
 exit "$(<"$job/code")"
