@@ -145,6 +145,35 @@ std::string cascade_text() {
   return text.str();
 }
 
+// What is looked through for faces is cut more cheaply than what is described, and shows the same.
+TEST(GreyRegion, IsNearlyTheSameWhereItIsCutQuickly) {
+  const cv::Mat grey = portrait(3);
+  const Box regions[] = {{0, 0, 320, 240}, {11, 7, 301, 211}, {-20, -10, 200, 150}, {100, 60, 50, 40}};
+  for (const Box& region : regions) {
+    for (const double scale : {0.2, 0.45, 0.8, 1.6}) {
+      const int width = static_cast<int>(region.width * scale), height = static_cast<int>(region.height * scale);
+      const GreyPatch exact = grey_region(view_of_grey(grey), region, width, height);
+      const GreyPatch quick = quick_grey_region(view_of_grey(grey), region, width, height);
+      ASSERT_EQ(quick.pixels.size(), exact.pixels.size());
+      double off = 0.0;
+      for (std::size_t i = 0; i < exact.pixels.size(); ++i)
+        off += std::abs(int{exact.pixels[i]} - int{quick.pixels[i]});
+      EXPECT_LT(off / static_cast<double>(exact.pixels.size()), 8.0) << region.x << ' ' << scale;
+    }
+  }
+  EXPECT_TRUE(quick_grey_region(view_of_grey(grey), {400, 0, 20, 20}, 10, 10).pixels.empty());
+  EXPECT_TRUE(quick_grey_region({}, {0, 0, 20, 20}, 10, 10).pixels.empty());
+}
+
+TEST(FaceDetector, LooksThroughAWholeImageInAFewSteps) {
+  const auto detector = FaceDetector::from_cascade(cascade_text(), {});
+  ASSERT_TRUE(detector) << detector.error().message;
+  const std::size_t steps = detector->steps(640, 480);
+  EXPECT_LE(steps, 35U) << "two in an image are half a second";
+  EXPECT_GE(steps, 10U) << "no step may take the time of an image";
+  EXPECT_EQ(detector->steps(20, 20), 0U) << "no face of 40 px is in it";
+}
+
 TEST(FaceDetector, SaysWhatIsWrongWithACascade) {
   for (const char* text : {"", "nothing", "<?xml version=\"1.0\"?><opencv_storage></opencv_storage>",
                            "<?xml version=\"1.0\"?><opencv_storage><cascade><a>1</a></cascade></opencv_storage>"}) {

@@ -16,51 +16,73 @@ struct FaceDetector::Cascade {
 
 namespace {
 
-// Faces are sought at twice the size of the cascade's own window of 20 px: from there on OpenCV tries every position, below only every other one.
-constexpr double kWindow_px = 40.0;
+// find_near() and find_all() scale faces to twice the size of the cascade's own window: from there on OpenCV tries every position, below only every
+// other one in each direction, which is a quarter of the work. That is enough to notice a face, and what was noticed is then looked at closely.
+constexpr double kWindow_px = 20.0;
+constexpr double kClose_px = 2.0 * kWindow_px;
 constexpr double kExpectedFace_px = 48.0;  // to which find_near() scales an expected face: room for nearer and farther
-constexpr double kNearStep = 1.15, kNearMost = 1.3;  // scales that find_near() tries
-constexpr double kScaleStep = 1.2;  // between the two sizes that a slice looks for, and kScaleStep^2 between slices
-constexpr double kTileWidth_px = 130.0, kTileHeight_px = 100.0;
-constexpr double kOverlap_px = kWindow_px * kScaleStep + 4.0;
+constexpr double kNearStep = 1.2, kNearMost = 1.25;  // scales that find_near() tries
+constexpr double kScaleStep = 1.2;                   // between the sizes that a slice looks for
+
+constexpr int kMinSizes = 2;  // that a slice looks for
+
+/// How an image is cut: the size to which the smallest faces of a slice are scaled, and how large a slice then is at most.
+struct Cut {
+  double face_px;
+  double width_px, height_px;
+};
+constexpr Cut kRoughCut{kWindow_px, 110.0, 90.0};
+constexpr Cut kCloseCut{kClose_px, 130.0, 100.0};
 
 struct Slice {
   Box region;
-  double face_px;
+  double face_px;      // the smallest that it looks for
+  double max_face_px;  // the largest
 };
 
-int tiles_along(double length_px, double tile_px) {
+int tiles_along(double length_px, double tile_px, double overlap_px) {
   if (length_px <= tile_px) return 1;
-  return 1 + static_cast<int>(std::ceil((length_px - tile_px) / (tile_px - kOverlap_px)));
+  return 1 + static_cast<int>(std::ceil((length_px - tile_px) / (tile_px - overlap_px)));
+}
+
+// As many as cost no more than the fewest do in the largest slice: pixels shrink with the square of the size sought.
+int sizes_in(double width_px, double height_px, const Cut& cut) {
+  constexpr double kShrink = 1.0 / (kScaleStep * kScaleStep);
+  const double affordable = cut.width_px * cut.height_px * (1.0 + kShrink);
+  double pixels = width_px * height_px * (1.0 + kShrink), next = width_px * height_px * kShrink * kShrink;
+  int sizes = kMinSizes;
+  for (; sizes < 10 && pixels + next <= affordable; ++sizes, next *= kShrink) pixels += next;
+  return sizes;
 }
 
 // Large faces first: they are near, and cheap to look for.
-std::vector<Slice> slices_of(int width_px, int height_px, double min_face_px) {
-  std::vector<double> sizes;
-  for (double face = min_face_px; face <= std::min(width_px, height_px); face *= kScaleStep * kScaleStep)
-    sizes.push_back(face);
+std::vector<Slice> slices_of(int width_px, int height_px, double min_face_px, const Cut& cut) {
+  const double largest = std::min(width_px, height_px);
+  const double overlap = cut.face_px * kScaleStep + 4.0;
   std::vector<Slice> slices;
-  for (auto face = sizes.rbegin(); face != sizes.rend(); ++face) {
-    const double scale = kWindow_px / *face;
+  for (double face = min_face_px; face <= largest;) {
+    const double scale = cut.face_px / face;
     const double w = width_px * scale, h = height_px * scale;
-    const int across = tiles_along(w, kTileWidth_px), down = tiles_along(h, kTileHeight_px);
-    const double tile_w = std::min(w, kTileWidth_px), tile_h = std::min(h, kTileHeight_px);
-    for (int j = 0; j < down; ++j) {
-      for (int i = 0; i < across; ++i) {
-        const double x = across > 1 ? (w - tile_w) * i / (across - 1) : 0.0;
-        const double y = down > 1 ? (h - tile_h) * j / (down - 1) : 0.0;
-        slices.push_back({{x / scale, y / scale, tile_w / scale, tile_h / scale}, *face});
-      }
+    const int across = tiles_along(w, cut.width_px, overlap), down = tiles_along(h, cut.height_px, overlap);
+    const double tile_w = std::min(w, cut.width_px), tile_h = std::min(h, cut.height_px);
+    const int sizes = across * down > 1 ? kMinSizes : sizes_in(w, h, cut);
+    const double next_face = face * std::pow(kScaleStep, sizes);
+    for (int i = across * down; i-- > 0;) {
+      const double x = across > 1 ? (w - tile_w) * (i % across) / (across - 1) : 0.0;
+      const double y = down > 1 ? (h - tile_h) * (i / across) / (down - 1) : 0.0;
+      slices.push_back({{x / scale, y / scale, tile_w / scale, tile_h / scale}, face, next_face / kScaleStep});
     }
+    face = next_face;
   }
+  std::ranges::reverse(slices);
   return slices;
 }
 
 std::vector<cv::Rect> detect(cv::CascadeClassifier& cascade, const GreyPatch& patch, double step, int neighbors,
-                             double max_px) {
+                             double min_px, double max_px) {
   std::vector<cv::Rect> found;
   const cv::Mat pixels(patch.height_px, patch.width_px, CV_8UC1, const_cast<std::uint8_t*>(patch.pixels.data()));
-  const int least = static_cast<int>(kWindow_px);
+  const int least = static_cast<int>(min_px);
   const int most = static_cast<int>(std::ceil(max_px));
   cascade.detectMultiScale(pixels, found, step, neighbors, 0, {least, least}, {most, most});
   return found;
@@ -70,11 +92,38 @@ double distance(const Box& a, const Box& b) {
   return std::hypot(a.x + a.width / 2 - b.x - b.width / 2, a.y + a.height / 2 - b.y - b.height / 2);
 }
 
-bool same_face(const Box& a, const Box& b) {
-  return distance(a, b) < 0.4 * std::max(a.width, b.width);
+bool is_among(const std::vector<Box>& faces, const Box& face) {
+  return std::ranges::any_of(faces, [&](const Box& other) { return same_face(other, face); });
+}
+
+// Every round looks at positions that the one before it left out: four rounds look at all.
+Slice shifted(Slice slice, std::size_t round) {
+  const double position = slice.face_px / kRoughCut.face_px;
+  slice.region.x += position * static_cast<double>(round % 2);
+  slice.region.y += position * static_cast<double>(round / 2 % 2);
+  return slice;
+}
+
+// Appends the rough places of faces in a slice, scaled so that the smallest are of face_px.
+void look_at(const ImageView& image, const Slice& slice, double face_px, int neighbors, cv::CascadeClassifier& cascade,
+             std::vector<Box>& rough) {
+  const double scale = face_px / slice.face_px;
+  const Box& region = slice.region;
+  const int width = static_cast<int>(std::lround(region.width * scale));
+  const int height = static_cast<int>(std::lround(region.height * scale));
+  const GreyPatch patch = quick_grey_region(image, region, width, height);
+  if (patch.pixels.empty()) return;
+  for (const cv::Rect& r : detect(cascade, patch, kScaleStep, neighbors, face_px, slice.max_face_px * scale + 1)) {
+    const Box face{region.x + r.x / scale, region.y + r.y / scale, r.width / scale, r.height / scale};
+    if (!is_among(rough, face)) rough.push_back(face);
+  }
 }
 
 }  // namespace
+
+bool same_face(const Box& a, const Box& b) {
+  return distance(a, b) < 0.4 * std::max(a.width, b.width);
+}
 
 FaceDetector::FaceDetector(std::unique_ptr<Cascade> cascade, const FaceDetectorParameters& parameters)
     : cascade_(std::move(cascade)), parameters_(parameters) {}
@@ -102,11 +151,11 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
   const double scale = kExpectedFace_px / expected.width;
   const Box region{expected.x + (expected.width - side) / 2, expected.y + (expected.height - side) / 2, side, side};
   const int size = static_cast<int>(std::lround(side * scale));
-  const GreyPatch patch = grey_region(image, region, size, size);
+  const GreyPatch patch = quick_grey_region(image, region, size, size);
   if (patch.pixels.empty()) return std::nullopt;
   std::optional<Box> nearest;
-  for (const cv::Rect& r :
-       detect(cascade_->classifier, patch, kNearStep, parameters_.min_neighbors, kExpectedFace_px * kNearMost)) {
+  for (const cv::Rect& r : detect(cascade_->classifier, patch, kNearStep, parameters_.min_neighbors, kClose_px,
+                                  kExpectedFace_px * kNearMost)) {
     const double back = side / size;
     const Box face{std::round(region.x) + r.x * back, std::round(region.y) + r.y * back, r.width * back,
                    r.height * back};
@@ -115,44 +164,42 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
   return nearest;
 }
 
-void FaceDetector::find_in_slice(const ImageView& image, const Box& region, double face_px, std::vector<Box>& found) {
-  const double scale = kWindow_px / face_px;
-  const int width = static_cast<int>(std::lround(region.width * scale));
-  const int height = static_cast<int>(std::lround(region.height * scale));
-  const GreyPatch patch = grey_region(image, region, width, height);
-  if (patch.pixels.empty()) return;
-  const int neighbors = std::min(1, parameters_.min_neighbors);
-  for (const cv::Rect& r : detect(cascade_->classifier, patch, kScaleStep, neighbors, kWindow_px * kScaleStep + 1)) {
-    const Box rough{region.x + r.x / scale, region.y + r.y / scale, r.width / scale, r.height / scale};
-    const auto known = [&](const Box& face) { return same_face(face, rough); };
-    if (std::any_of(found.begin(), found.end(), known)) continue;
-    const auto face = find_near(image, rough);
-    if (!face) continue;
-    const auto same = [&](const Box& other) { return same_face(other, *face); };
-    if (std::none_of(found.begin(), found.end(), same)) found.push_back(*face);
-  }
-}
-
-void FaceDetector::search(const ImageView& image, WorkBudget& budget, std::vector<Box>& found) {
+// A new face is looked at closely in a step of its own: no step costs more than one look.
+void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
   if (image.empty()) return;
-  const auto slices = slices_of(image.width_px, image.height_px, parameters_.min_face_px);
-  for (std::size_t done = 0; done < slices.size() && budget.grant(); ++done) {
-    next_slice_ %= slices.size();
-    const Slice& slice = slices[next_slice_++];
-    find_in_slice(image, slice.region, slice.face_px, found);
+  if (noticed_.empty()) {
+    const auto slices = slices_of(image.width_px, image.height_px, parameters_.min_face_px, kRoughCut);
+    if (slices.empty()) return;
+    const auto slice = shifted(slices[next_slice_ % slices.size()], next_slice_ / slices.size());
+    ++next_slice_;
+    look_at(image, slice, kRoughCut.face_px, 0, cascade_->classifier, noticed_);
+    std::erase_if(noticed_, [&](const Box& rough) { return is_among(faces, rough); });
+    return;
   }
+  const Box rough = noticed_.back();
+  noticed_.pop_back();
+  const auto face = find_near(image, rough);
+  if (face && !is_among(faces, *face)) faces.push_back(*face);
 }
 
 std::vector<Box> FaceDetector::find_all(const ImageView& image) {
-  UnlimitedBudget budget;
-  std::vector<Box> found;
-  next_slice_ = 0;
-  search(image, budget, found);
-  return found;
+  std::vector<Box> faces;
+  if (image.empty()) return faces;
+  const int neighbors = std::min(1, parameters_.min_neighbors);
+  for (const Slice& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
+    std::vector<Box> noticed;
+    look_at(image, slice, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
+    for (const Box& rough : noticed) {
+      if (is_among(faces, rough)) continue;
+      const auto face = find_near(image, rough);
+      if (face && !is_among(faces, *face)) faces.push_back(*face);
+    }
+  }
+  return faces;
 }
 
-std::size_t FaceDetector::slices(int width_px, int height_px) const {
-  return slices_of(width_px, height_px, parameters_.min_face_px).size();
+std::size_t FaceDetector::steps(int width_px, int height_px) const {
+  return slices_of(width_px, height_px, parameters_.min_face_px, kRoughCut).size();
 }
 
 }  // namespace cgsr::person

@@ -1,22 +1,11 @@
 #include "pipeline/person/face/face_tracks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
 
 namespace cgsr::person {
-namespace {
-
-bool same_face(const Box& a, const Box& b) {
-  const double dx = a.x + a.width / 2 - b.x - b.width / 2;
-  const double dy = a.y + a.height / 2 - b.y - b.height / 2;
-  return std::hypot(dx, dy) < 0.4 * std::max(a.width, b.width);
-}
-
-}  // namespace
-
 FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
     : detector_(std::move(detector)), parameters_(parameters) {
   tracks_.reserve(kMaxFaces);
@@ -55,20 +44,32 @@ void FaceTracks::add(const Box& face) {
   tracks_.push_back(track);
 }
 
-void FaceTracks::pass() {
+void FaceTracks::age() {
   for (FaceTrack& track : tracks_) {
     track.seen = false;
     ++track.images_waited_;
   }
 }
 
-void FaceTracks::look(const ImageView& image, WorkBudget& budget) {
-  pass();
-  for (FaceTrack& track : tracks_) ++track.looks_waited_;
-  while (FaceTrack* const track = longest_waiting()) {
-    if (!budget.grant()) return;
-    look_for(*track, image);
-  }
+void FaceTracks::search(const ImageView& image) {
+  looks_without_search_ = 0;
+  found_.clear();
+  for (const FaceTrack& track : tracks_) found_.push_back(track.box);
+  const std::size_t known = found_.size();
+  detector_.search(image, found_);
+  for (std::size_t i = known; i < found_.size(); ++i) add(found_[i]);
+}
+
+void FaceTracks::pass(const ImageView& image, WorkBudget& budget) {
+  age();
+  if (!image.empty() && budget.grant()) search(image);
+}
+
+void FaceTracks::expect(const ImageView& image, const Box& expected) {
+  if (const auto face = detector_.find_near(image, expected)) add(*face);
+}
+
+void FaceTracks::forget_lost() {
   std::erase_if(tracks_, [this](const FaceTrack& track) { return track.missed >= parameters_.max_missed; });
   // Two that were followed onto one face are one: the older stays.
   for (std::size_t i = tracks_.size(); i-- > 1;) {
@@ -77,9 +78,27 @@ void FaceTracks::look(const ImageView& image, WorkBudget& budget) {
       tracks_.erase(older);
     }
   }
-  found_.clear();
-  detector_.search(image, budget, found_);
-  for (const Box& face : found_) add(face);
+}
+
+void FaceTracks::look(const ImageView& image, WorkBudget& budget, const std::optional<Box>& expected) {
+  constexpr int kMaxLooksWithoutSearch = 2;
+  age();
+  if (image.empty()) return;
+  for (FaceTrack& track : tracks_) ++track.looks_waited_;
+  if (looks_without_search_ >= kMaxLooksWithoutSearch && budget.grant()) search(image);
+  ++looks_without_search_;
+  while (FaceTrack* const track = longest_waiting()) {
+    if (!budget.grant()) return;
+    look_for(*track, image);
+  }
+  forget_lost();
+  const auto is_there = [&](const FaceTrack& track) { return same_face(track.box, *expected); };
+  if (expected && std::ranges::none_of(tracks_, is_there)) {
+    if (!budget.grant()) return;
+    expect(image, *expected);
+  }
+  const std::size_t most = detector_.steps(image.width_px, image.height_px);
+  for (std::size_t i = 0; i < most && budget.grant(); ++i) search(image);
 }
 
 std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {

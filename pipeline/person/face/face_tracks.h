@@ -9,6 +9,7 @@
 #include "pipeline/person/face/face_detector.h"
 #include "pipeline/person/face/face_recognizer.h"
 #include "platform/parameters.h"
+#include "platform/work_budget.h"
 
 namespace cgsr::person {
 
@@ -56,10 +57,12 @@ class FaceTracks {
 
   explicit FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters = {});
 
-  /// Looks for faces: one unit of the budget for each known face, those first that waited longest, and one for each slice of the search.
-  void look(const ImageView& image, WorkBudget& budget);
-  /// An image in which no face is looked for.
-  void pass();
+  /// Looks for faces: one unit of the budget for each known face, those first that waited longest, one for where a face is expected and none is known,
+  /// and one for each step of the search for others, which takes its turn first when it got none for some images.
+  /// \param expected  where the face of somebody would be who is known by something else; nothing: nowhere.
+  void look(const ImageView& image, WorkBudget& budget, const std::optional<Box>& expected = std::nullopt);
+  /// An image in which known faces are not looked for: one step of the search for others.
+  void pass(const ImageView& image, WorkBudget& budget);
 
   /// \return the crop of the seen face whose name is most wanted; nothing: none is wanted now.
   [[nodiscard]] std::optional<FaceQuestion> question(const ImageView& image) const;
@@ -72,6 +75,10 @@ class FaceTracks {
 
  private:
   void look_for(FaceTrack& track, const ImageView& image);
+  void age();
+  void expect(const ImageView& image, const Box& expected);
+  void forget_lost();
+  void search(const ImageView& image);
   void add(const Box& face);
   void count_votes(FaceTrack& track) const;
   [[nodiscard]] FaceTrack* longest_waiting();
@@ -80,6 +87,7 @@ class FaceTracks {
   FaceTrackParameters parameters_;
   std::vector<FaceTrack> tracks_;
   std::vector<Box> found_;
+  int looks_without_search_ = 0;
   std::uint32_t next_number_ = 1;
 };
 

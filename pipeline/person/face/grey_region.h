@@ -22,4 +22,8 @@ struct GreyPatch {
 /// \return empty where the image or the region is empty, or where they do not meet.
 GreyPatch grey_region(const ImageView& image, const Box& region, int width_px, int height_px);
 
+/// The same for finding faces: halved as often as it can be, then linear, which is cheaper and a little less smooth; a pixel at the right and lower edge may
+/// be left out, and the rest is stretched over its place.
+GreyPatch quick_grey_region(const ImageView& image, const Box& region, int width_px, int height_px);
+
 }  // namespace cgsr::person

@@ -11,11 +11,9 @@ Identifier::Identifier(FaceDetector detector, std::unique_ptr<FaceRecognizer> re
     : faces_(std::move(detector), parameters.faces), recognizer_(std::move(recognizer)), tracker_(parameters.tracker) {}
 
 void Identifier::exchange_with_recognizer(const ImageView& image) {
-  ++asked_images_ago_;
   if (const auto answer = recognizer_->answer()) {
     faces_.hear(*answer);
     asking_ = false;
-    answer_took_images_ = asked_images_ago_;
   }
   if (asking_) return;
   auto question = faces_.question(image);
@@ -24,7 +22,6 @@ void Identifier::exchange_with_recognizer(const ImageView& image) {
   if (!recognizer_->ask(std::move(*question))) return;
   faces_.asked(face);
   asking_ = true;
-  asked_images_ago_ = 0;
 }
 
 // The face of the person of interest; the largest one that was compared where his is not followed. While it is followed and not seen in this image,
@@ -41,11 +38,20 @@ std::optional<FaceSighting> Identifier::face_of(std::optional<Label> interest) c
   return FaceSighting{chosen->box, *chosen->match};
 }
 
+// Who is known by his shirt alone may be somebody else: his face is looked for first.
+std::optional<Box> Identifier::face_above_shirt() const {
+  constexpr double kAbove = 1.2;  // from the face's upper edge to the shirt's, in widths of the face
+  if (last_.source != PersonSource::kShirt || last_.face_px <= 0.0) return std::nullopt;
+  const double face_px = last_.face_px;
+  const double middle = last_.box.x + last_.box.width / 2;
+  return Box{middle - face_px / 2, last_.box.y - kAbove * face_px, face_px, face_px};
+}
+
 PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> interest, WorkBudget& budget) {
   if (tracker_.face_is_due()) {
-    faces_.look(image, budget);
+    faces_.look(image, budget, face_above_shirt());
   } else {
-    faces_.pass();
+    faces_.pass(image, budget);
   }
   exchange_with_recognizer(image);
   // How the region was lit in which the person was last is how it is lit now.

@@ -60,23 +60,19 @@ class Identifier {
              const IdentifierParameters& parameters = {});
 
   /// \param image  YUYV.  \param interest  whose face counts where several are in view; nothing: the largest that is known.
-  /// \param budget  a unit for each known face that is looked for, and for each slice of the search for others.
+  /// \param budget  a unit for each known face that is looked for, for the place above the shirt, and for each step of the search for others.
   PeopleInView identify(const ImageView& image, std::optional<Label> interest, WorkBudget& budget);
-
-  /// The images between the last question and its answer: from crop to name.
-  [[nodiscard]] int answer_took_images() const { return answer_took_images_; }
 
  private:
   void exchange_with_recognizer(const ImageView& image);
   [[nodiscard]] std::optional<FaceSighting> face_of(std::optional<Label> interest) const;
+  [[nodiscard]] std::optional<Box> face_above_shirt() const;
 
   FaceTracks faces_;
   std::unique_ptr<FaceRecognizer> recognizer_;
   PersonTracker tracker_;
   PersonSighting last_;
   bool asking_ = false;
-  int asked_images_ago_ = 0;
-  int answer_took_images_ = 0;
 };
 
 }  // namespace cgsr::person
