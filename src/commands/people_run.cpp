@@ -31,17 +31,33 @@ double distance(const FaceDescriptor& face, const FaceView& view) {
 }
 
 /// The first face, then again and again the one that is farthest from those chosen.
-std::vector<FaceView> most_different(const std::vector<FaceDescriptor>& faces, std::size_t count) {
-  std::vector<FaceView> views;
+/// \return their places.
+std::vector<std::size_t> most_different(const std::vector<FaceDescriptor>& faces, std::size_t count) {
+  std::vector<std::size_t> chosen;
   std::vector<double> nearest(faces.size(), 1.0);
   std::size_t next = 0;
-  while (views.size() < std::min(count, faces.size())) {
-    views.push_back(person::view_of(faces[next]));
-    for (std::size_t i = 0; i < faces.size(); ++i) nearest[i] = std::min(nearest[i], distance(faces[i], views.back()));
+  while (chosen.size() < std::min(count, faces.size())) {
+    chosen.push_back(next);
+    const FaceView view = person::view_of(faces[next]);
+    for (std::size_t i = 0; i < faces.size(); ++i) nearest[i] = std::min(nearest[i], distance(faces[i], view));
     nearest[next] = -1.0;
     next = static_cast<std::size_t>(std::max_element(nearest.begin(), nearest.end()) - nearest.begin());
   }
-  return views;
+  return chosen;
+}
+
+/// How far faces of one person are from each other: the mean distance of each from all others together; 0 for a single one.
+double mean_distance_among(const std::vector<FaceDescriptor>& faces, const std::vector<std::size_t>& chosen) {
+  if (chosen.size() < 2) return 0.0;
+  double sum = 0.0;
+  for (const std::size_t one : chosen) {
+    person::FaceGallery others(person::FaceMatchParameters{.min_views = 1});
+    for (const std::size_t other : chosen) {
+      if (other != one) others.enroll(1, person::view_of(faces[other]));
+    }
+    sum += others.identify(faces[one]).distance;
+  }
+  return sum / static_cast<double>(chosen.size());
 }
 
 /// The faces that are alone in their image.
@@ -70,14 +86,29 @@ std::string person_name(const person::Identities& identities, Label number) {
   return one == identities.people.end() ? "a stranger" : one->name;
 }
 
-/// \return the person whose face most of these are, if they are one's.
-std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, const person::FaceGallery& gallery) {
-  std::map<Label, std::size_t> named;
+/// \return the person whose face most of these are, if they are one's: named by the gallery, and not much farther from that person than from each other.
+/// The gallery alone is not enough where few are enrolled: nobody tells it how alike faces are in this light, from this camera.
+std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, double among,
+                                    const person::FaceGallery& gallery) {
+  constexpr double kMuchFarther =
+      1.5;  // photographs of one person: 0.7 to 1.4; of two: from 1.4 on, the nearest of all others
+  constexpr double kAlike = 0.04;  // nearer than this are only images of one sitting
+  struct Named {
+    std::size_t faces = 0;
+    double distance = 0.0;  // sum
+  };
+  std::map<Label, Named> named;
   for (const FaceDescriptor& face : faces) {
-    if (const auto match = gallery.identify(face); match.label) ++named[*match.label];
+    const auto match = gallery.identify(face);
+    if (!match.label) continue;
+    ++named[*match.label].faces;
+    named[*match.label].distance += match.distance;
   }
-  const auto most = std::ranges::max_element(named, {}, &std::pair<const Label, std::size_t>::second);
-  if (most == named.end() || 2 * most->second <= faces.size()) return std::nullopt;
+  const auto fewer = [](const auto& a, const auto& b) { return a.second.faces < b.second.faces; };
+  const auto most = std::ranges::max_element(named, fewer);
+  if (most == named.end() || 2 * most->second.faces <= faces.size()) return std::nullopt;
+  const double away = most->second.distance / static_cast<double>(most->second.faces);
+  if (away > kMuchFarther * std::max(among, kAlike)) return std::nullopt;
   return most->first;
 }
 
@@ -115,13 +146,15 @@ Result<Enrolled> enroll(const PeopleOptions& options) {
   Enrolled enrolled{.number = (*who)->number, .note = opened->note};
   const auto faces = lone_faces(options, enrolled);
   if (!faces) return tl::unexpected(faces.error());
-  if (const auto other = person_of_most(*faces, others); other && *other != enrolled.number) {
+  const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
+  const auto chosen = most_different(*faces, max_views);
+  const auto other = person_of_most(*faces, mean_distance_among(*faces, chosen), others);
+  if (other && *other != enrolled.number) {
     return fail(fmt::format("{}: this is the face of '{}', who is enrolled already", options.input,
                             person_name(identities, *other)));
   }
-  const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
   auto& views = (*who)->views;
-  for (const FaceView& view : most_different(*faces, max_views)) views.push_back(view);
+  for (const std::size_t one : chosen) views.push_back(person::view_of((*faces)[one]));
   if (views.size() > max_views) views.erase(views.begin(), views.end() - static_cast<std::ptrdiff_t>(max_views));
   enrolled.views = static_cast<int>(views.size());
   if (auto saved = save_identities(identities, options.identities); !saved) return tl::unexpected(saved.error());
