@@ -1,6 +1,9 @@
 #include "pipeline/stages/tasks.h"
 
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
 
 namespace cgsr::stages {
 namespace {
@@ -89,6 +92,31 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";
   Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
   decision.requests = first_requests();
+  return decision;
+}
+
+Decision WhoIsWhoTask::decide(const FrameResult& frame, const ImageView& /*image*/, Duration elapsed) {
+  std::array<behavior::FaceAtBearing, person::FaceTracks::kMaxFaces> faces{};
+  std::size_t count = 0;
+  if (const IdentifiedPeople* const people = frame.people.within(Duration::zero())) {
+    for (const person::SeenFace& face : people->seen_faces()) {
+      const double off_px = camera_.cx_px - (face.box.x + face.box.width / 2);
+      faces[count++] = {std::atan2(off_px, camera_.fx_px), face.compared, face.person.value_or(person::kStranger),
+                        face.confidence};
+    }
+  }
+  const behavior::LookAlongDecision look = look_.decide(std::span(faces).first(count), elapsed);
+  Decision decision{look.goal, false, behavior::to_string(look.state), {}, {}};
+  if (!look.told) return decision;
+  Event says{"says", look.told->number == person::kStranger ? "here is somebody whom I do not know" : "here is", {}};
+  const auto add = [&says](std::string_view name, double value, std::string_view unit) {
+    says.numbers[says.number_count++] = {name, value, unit};
+  };
+  add("place", look.place, "");
+  if (look.told->number != person::kStranger) add("number", look.told->number, "");
+  add("confidence", look.told->confidence, "");
+  add("bearing", look.told->bearing_rad * 180.0 / std::numbers::pi, "deg");
+  decision.events.add(says);
   return decision;
 }
 

@@ -4,6 +4,7 @@
 
 #include "pipeline/behavior/follow.h"
 #include "pipeline/behavior/follow_person_parameters.h"
+#include "pipeline/behavior/look_along.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/geometry/camera.h"
@@ -42,6 +43,18 @@ class FollowPersonTask final : public Task {
   person::Label person_;  // 0: nobody yet
   behavior::Follow follow_;
   std::optional<behavior::Sighting> last_;  // of the person, with its age
+  geometry::Camera camera_;
+};
+
+/// Who Is Who in a line (6.4.1.2): turns along a line of people and tells who each is. What is said is an event with numbers, never a name.
+class WhoIsWhoTask final : public Task {
+ public:
+  /// \param camera  of the images that come.
+  WhoIsWhoTask(const behavior::LookAlong& look, const geometry::Camera& camera) : look_(look), camera_(camera) {}
+  Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
+
+ private:
+  behavior::LookAlong look_;
   geometry::Camera camera_;
 };
 

@@ -116,6 +116,10 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
     return std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
                                                       optics_of(state));
   }
+  if (config.task.kind == config::TaskKind::kLine) {
+    return std::make_unique<stages::WhoIsWhoTask>(behavior::LookAlong(config.task.line, config.motion),
+                                                  optics_of(state));
+  }
   auto places = behavior::parse_places(config.task.route.places_m);
   if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
   return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places), config.motion));

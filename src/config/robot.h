@@ -121,8 +121,11 @@ struct Robot {
   /// The task is about an object, or one is named all the same.
   [[nodiscard]] bool needs_object() const {
     if (task.kind == TaskKind::kRoute) return false;
-    return task.kind != TaskKind::kPerson || !run.model.empty() || !run.learn.empty();
+    return !about_people() || !run.model.empty() || !run.learn.empty();
   }
+
+  /// The task is about people who are enrolled.
+  [[nodiscard]] bool about_people() const { return task.kind == TaskKind::kPerson || task.kind == TaskKind::kLine; }
 
   [[nodiscard]] bool simulated_camera() const { return camera.kind == CameraKind::kSim; }
   [[nodiscard]] bool simulated_base() const { return base.kind == BaseKind::kRmp && base.can == CanKind::kSim; }
@@ -139,8 +142,9 @@ struct Robot {
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
-    if (task.kind == TaskKind::kPerson && !person.enabled()) {
-      return "task.kind = \"person\" needs person.identities: the file in which cgsr people enroll keeps who is known";
+    if (about_people() && !person.enabled()) {
+      return "task.kind = \"person\" and \"line\" need person.identities: the file in which cgsr people enroll keeps "
+             "who is known";
     }
     if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
       return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "pipeline/behavior/follow_person_parameters.h"
+#include "pipeline/behavior/look_along_parameters.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/calibration/marker.h"
@@ -76,10 +77,12 @@ enum class TaskKind : std::uint8_t {
   kRoute,   ///< drive from place to place.
   kLamp,    ///< Algorithm 5.2: find the lamp, back off, track with masks.
   kPerson,  ///< keep at a distance from a person who is enrolled (6.4).
+  kLine,    ///< tell who is who in a line of people (6.4.1.2).
 };
 inline constexpr std::array kTaskKindNames{
     Named<TaskKind>{"follow", TaskKind::kFollow}, Named<TaskKind>{"route", TaskKind::kRoute},
-    Named<TaskKind>{"lamp", TaskKind::kLamp}, Named<TaskKind>{"person", TaskKind::kPerson}};
+    Named<TaskKind>{"lamp", TaskKind::kLamp}, Named<TaskKind>{"person", TaskKind::kPerson},
+    Named<TaskKind>{"line", TaskKind::kLine}};
 constexpr std::string_view to_string(TaskKind kind) {
   return word_in(kTaskKindNames, kind);
 }
@@ -89,16 +92,19 @@ struct Task {
   behavior::RouteParameters route;
   behavior::SeekLampParameters lamp;
   behavior::FollowPersonParameters person;
+  behavior::LookAlongParameters line;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.choice(
         "kind", self.kind, kTaskKindNames,
         "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
-        "Algorithm 5.2; these two need a map. The task person keeps at a distance from somebody who is enrolled.");
+        "Algorithm 5.2; these two need a map. The task person keeps at a distance from somebody who is enrolled; "
+        "line tells who is who in a line of people.");
     visit.section("route", self.route, "The places and the speed of a route");
     visit.section("lamp", self.lamp, "Exploring, locating the lamp, backing off and tracking (Alg. 5.2)");
     visit.section("person", self.person, "Whom the robot follows (6.4)");
+    visit.section("line", self.line, "Looking along a line of people (6.4.1.2)");
   }
 };
 
