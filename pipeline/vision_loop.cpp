@@ -6,6 +6,7 @@ using namespace stages;
 
 const FrameResult& VisionLoop::on_image(const ImageLease& image, const FrameInputs& inputs) {
   const ImageView& pixels = image.view();
+  frame_.odometry = inputs.odometry;
   frame_.view = run<DecodeStage>(pixels);
   frame_.pose = run<LocalizeStage>(pixels, frame_.view, inputs.odometry);              // chapter 4
   frame_.lamp = run<ProbesStage>(pixels, frame_.pose, inputs.lamps, inputs.requests);  // 5.1

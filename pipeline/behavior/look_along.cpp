@@ -101,11 +101,17 @@ LookAlongDecision LookAlong::tell() {
   return {{}, state_, static_cast<int>(told_), told};
 }
 
-LookAlongDecision LookAlong::decide(std::span<const FaceAtBearing> faces, Duration elapsed) {
+LookAlongDecision LookAlong::decide(std::span<const FaceAtBearing> faces, std::optional<double> heading_rad,
+                                    Duration elapsed) {
   if (state_ == LookAlongState::kDone) return {{}, state_, 0, std::nullopt};
   if (state_ == LookAlongState::kTelling) return tell();
   const double elapsed_s = to_seconds(elapsed);
-  heading_rad_ += rate_radps_ * elapsed_s;
+  if (!heading_rad) {
+    rate_radps_ = 0.0;
+    return {{}, state_, 0, std::nullopt};
+  }
+  if (!first_heading_rad_) first_heading_rad_ = heading_rad;
+  heading_rad_ = std::remainder(*heading_rad - *first_heading_rad_, 360.0 * kDegree);
   const double reach_rad = parameters_.reach_deg * kDegree;
   const bool stay = state_ != LookAlongState::kTurningAside && note(faces, elapsed_s);
   if (state_ == LookAlongState::kTurningAside) {

@@ -51,8 +51,9 @@ class LookAlong {
   LookAlong(const LookAlongParameters& parameters, const DriveLimits& limits)
       : parameters_(parameters), limits_(limits) {}
 
-  /// \param faces  of this image.  \param elapsed  since the last image.
-  LookAlongDecision decide(std::span<const FaceAtBearing> faces, Duration elapsed);
+  /// \param faces  of this image.  \param heading_rad  of the robot when it was exposed, from any fixed direction; nothing: not known, the
+  ///     robot stands and nobody is noticed.  \param elapsed  since the last image.
+  LookAlongDecision decide(std::span<const FaceAtBearing> faces, std::optional<double> heading_rad, Duration elapsed);
 
  private:
   struct Vote {
@@ -77,7 +78,8 @@ class LookAlong {
   LookAlongParameters parameters_;
   DriveLimits limits_;
   LookAlongState state_ = LookAlongState::kTurningAside;
-  double heading_rad_ = 0.0;  // as commanded, from the first direction
+  std::optional<double> first_heading_rad_;
+  double heading_rad_ = 0.0;  // from the first direction
   double rate_radps_ = 0.0;
   std::array<Met, kMaxPeople> met_{};
   std::size_t met_count_ = 0;

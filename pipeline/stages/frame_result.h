@@ -21,6 +21,7 @@ struct FrameInputs {
 
 /// What one image led to: the last output of every stage (the components of Fig. 5.1), with its age.
 struct FrameResult {
+  std::optional<hal::Odometry> odometry;  ///< of the base, at this image's exposure; for tasks that need no map.
   runtime::Aged<View> view;
   runtime::Aged<PoseEstimate> pose;
   runtime::Aged<LampReport> lamp;

@@ -105,7 +105,8 @@ Decision WhoIsWhoTask::decide(const FrameResult& frame, const ImageView& /*image
                         face.confidence};
     }
   }
-  const behavior::LookAlongDecision look = look_.decide(std::span(faces).first(count), elapsed);
+  const auto heading_rad = frame.odometry ? std::optional(frame.odometry->heading_rad) : std::nullopt;
+  const behavior::LookAlongDecision look = look_.decide(std::span(faces).first(count), heading_rad, elapsed);
   Decision decision{look.goal, false, behavior::to_string(look.state), {}, {}};
   if (!look.told) return decision;
   Event says{"says", look.told->number == person::kStranger ? "here is somebody whom I do not know" : "here is", {}};

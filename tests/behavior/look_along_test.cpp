@@ -10,6 +10,7 @@ namespace cgsr::behavior {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kFirst_rad = 2.0;  // the robot's first heading
 constexpr Duration kImage = seconds(1.0 / 30.0);
 
 /// Somebody who stands at a bearing and is taken for these people in turn.
@@ -36,8 +37,10 @@ class Line {
         const int number = compared ? one.taken_for[static_cast<std::size_t>(image) % one.taken_for.size()] : 0;
         faces.push_back({bearing, compared, number, one.confidence});
       }
-      const LookAlongDecision decision = look_.decide(faces, kImage);
-      heading_rad_ += decision.goal.left_radps * to_seconds(kImage);
+      const bool moves = image >= images_until_it_moves_;
+      const auto heading = image % 50 == 49 ? std::nullopt : std::optional(kFirst_rad + heading_rad_);
+      const LookAlongDecision decision = look_.decide(faces, heading, kImage);
+      if (moves) heading_rad_ += slip_ * decision.goal.left_radps * to_seconds(kImage);
       most_left_rad_ = std::max(most_left_rad_, heading_rad_);
       if (decision.told) told.push_back(decision);
       if (decision.state == LookAlongState::kDone) {
@@ -47,6 +50,11 @@ class Line {
     }
     return told;
   }
+  /// The base moves only from some image on, and by less than it is commanded.
+  void hold_back(int images, double slip) {
+    images_until_it_moves_ = images;
+    slip_ = slip;
+  }
   [[nodiscard]] bool done() const { return done_; }
   [[nodiscard]] double heading_deg() const { return heading_rad_ / kDegree; }
   [[nodiscard]] double most_left_deg() const { return most_left_rad_ / kDegree; }
@@ -55,6 +63,8 @@ class Line {
   std::vector<Stander> people_;
   LookAlong look_;
   double heading_rad_ = 0.0, most_left_rad_ = 0.0;
+  int images_until_it_moves_ = 0;
+  double slip_ = 1.0;
   bool done_ = false;
 };
 
@@ -69,6 +79,15 @@ TEST(LookAlong, TellsWhoStandsWhereFromLeftToRight) {
     EXPECT_EQ(told[i].place, static_cast<int>(i) + 1);
   }
   EXPECT_NEAR(told[0].told->bearing_rad / kDegree, 40.0, 2.0);
+}
+
+TEST(LookAlong, GoesByWhatTheRobotTurnedNotByWhatItWasToTurn) {
+  Line line({{40, {3}}, {0, {1}}, {-40, {2}}});
+  line.hold_back(60, 0.6);
+  const auto told = line.run();
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_NEAR(told[0].told->bearing_rad / kDegree, 40.0, 2.0);
+  EXPECT_NEAR(told[2].told->bearing_rad / kDegree, -40.0, 2.0);
 }
 
 TEST(LookAlong, TurnsToBothEndsAndEndsWhereNobodyStands) {
