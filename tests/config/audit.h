@@ -70,13 +70,14 @@ class Audit {
     struct Suffix {
       std::string_view unit, suffix;
     };
-    static constexpr std::array<Suffix, 26> kSuffixes{{{"K", "_k"},           {"bit/s", "_bitps"},
+    static constexpr std::array<Suffix, 28> kSuffixes{{{"K", "_k"},           {"bit/s", "_bitps"},
                                                        {"m", "_m"},           {"s", "_s"},
                                                        {"ms", "_ms"},         {"µs", "_us"},
                                                        {"rad", "_rad"},       {"deg", "_deg"},
                                                        {"px", "_px"},         {"%", "_percent"},
                                                        {"Hz", "_hz"},         {"1/s", "_per_s"},
                                                        {"m/s", "_mps"},       {"m/s²", "_mps2"},
+                                                       {"deg/s", "_degps"},   {"1/px", "_per_px"},
                                                        {"rad/s", "_radps"},   {"rad/s²", "_radps2"},
                                                        {"m/s^2", "_mps2"},    {"rad/s^2", "_radps2"},
                                                        {"1/m", "_per_m"},     {"1/(m/s)", "_per_mps"},
