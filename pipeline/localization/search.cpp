@@ -76,9 +76,9 @@ PriorShape PriorShape::of(const Matrix6d& covariance, const Matrix6d& motion_met
 }
 
 Search::Search(const LocalizerParameters& parameters, Alternation& alternation, const geometry::Camera& camera)
-    : parameters_(parameters),
+    : refinement_(alternation),
       alternation_(&alternation),
-      refinement_(alternation),
+      parameters_(parameters),
       field_(camera.width_px, camera.height_px) {
   finalists_.reserve(static_cast<std::size_t>(parameters.finalists) + 1);
   estimates_.reserve(kKept + 1);

@@ -69,26 +69,26 @@ class Search {
   [[nodiscard]] double motion_between(const geometry::Pose& a, const geometry::Pose& b) const;
   static float rank_of(const Estimate& estimate);
 
-  LocalizerParameters parameters_;
-  Alternation* alternation_;
-  Refinement refinement_;
-  DirectionField field_;
-  geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
-  PriorShape shape_;
   geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
   geometry::Pose X_WC_began_ = geometry::Pose::Identity();
   geometry::Pose X_C0C1_since_field_ = geometry::Pose::Identity();  ///< since the image that starts are scored in.
+  Refinement refinement_;
+  geometry::Matrix6d metric_ = geometry::Matrix6d::Zero();
+  PriorShape shape_;
   Estimate best_;
+  std::array<Estimate, kJudged> judged_;
+  Alternation* alternation_;
+  double cells_ = 1.0;
+  std::size_t next_judged_ = 0;
   std::vector<Candidate> finalists_;  ///< best first.
   std::vector<Estimate> estimates_;   ///< distinct, best first.
-  std::array<Estimate, kJudged> judged_;
-  double cells_ = 1.0;
+  LocalizerParameters parameters_;
+  DirectionField field_;
   std::uint32_t sequence_ = 0;  ///< where this search's even numbers begin: the next search tries other starts.
   std::uint32_t start_count_ = 0;
   std::uint32_t next_start_ = 0;
   std::uint32_t next_finalist_ = 0;
   std::uint32_t next_neighbour_ = 0;
-  std::size_t next_judged_ = 0;
   int walk_ = 0;
   float lead_ = 0.0F;
   Stage stage_ = Stage::kIdle;

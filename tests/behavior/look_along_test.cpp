@@ -126,8 +126,10 @@ TEST(LookAlong, DoesNotWaitForEverForAFaceThatIsNotNamed) {
 }
 
 TEST(LookAlong, NoticesSixteenPeopleAndIgnoresMore) {
+  constexpr int kCrowd = 20;
   std::vector<Stander> crowd;
-  for (int i = 0; i < 20; ++i) crowd.push_back({80.0 - 8.0 * i, {i + 1}});
+  crowd.reserve(kCrowd);
+  for (int i = 0; i < kCrowd; ++i) crowd.push_back({80.0 - 8.0 * i, {i + 1}});
   LookAlongParameters wide;
   wide.reach_deg = 90.0;
   Line line(crowd, wide);

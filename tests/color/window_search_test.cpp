@@ -239,7 +239,9 @@ TEST(WindowSearchAlloc, NothingAfterConstruction) {
   imaging::ReducedImage image(320, 240);
   ASSERT_TRUE(imaging::reduce(scene.photograph(2.0), 2, search.labels(), image));
   std::vector<SearchRequest> requests;
-  for (int i = 0; i < 60; ++i) requests.push_back(random_request(world.model, 320, 240, random));
+  constexpr int kRequests = 60;
+  requests.reserve(kRequests);
+  for (int i = 0; i < kRequests; ++i) requests.push_back(random_request(world.model, 320, 240, random));
   int matches = 0;
   (void)search.search(image, requests[0]);
   const test::AllocationGuard guard;
