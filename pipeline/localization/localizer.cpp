@@ -125,8 +125,7 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.lead = standing ? standing->lead : 1.0F;
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
   answer.evidence = standing ? evidence_of(estimate, *standing, parameters.decision) : estimate.explained;
-  if (standing)
-    answer.error_log_odds = static_cast<float>(log_odds_of_error(estimate, *standing, parameters.decision));
+  if (standing) answer.error_log_odds = static_cast<float>(log_odds_of_error(estimate, *standing, parameters.decision));
   if (parameters.gate) {
     answer.reason = gate(estimate, standing, with_map_error(covariance, parameters), parameters);
   } else if (estimate.solved) {

@@ -48,7 +48,7 @@ struct GateParameters {
   double error_per_ln_deg = 0.97;
   double error_per_px = 4.3;
   double error_per_lead = 8.65;
-  double max_error_log_odds = -2.5;
+  double max_error_log_odds = -2.0;
   double same_m = 0.05;
   double same_deg = 1.5;
   int min_expected = 3;

@@ -68,8 +68,9 @@ std::vector<Slice> slices_of(int width_px, int height_px, double min_face_px, co
     const int sizes = across * down > 1 ? kMinSizes : sizes_in(w, h, cut);
     const double next_face = face * std::pow(kScaleStep, sizes);
     for (int i = across * down; i-- > 0;) {
+      const int row = i / across;
       const double x = across > 1 ? (w - tile_w) * (i % across) / (across - 1) : 0.0;
-      const double y = down > 1 ? (h - tile_h) * (i / across) / (down - 1) : 0.0;
+      const double y = down > 1 ? (h - tile_h) * row / (down - 1) : 0.0;
       slices.push_back({{x / scale, y / scale, tile_w / scale, tile_h / scale}, face, next_face / kScaleStep});
     }
     face = next_face;
