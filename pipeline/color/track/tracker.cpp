@@ -31,14 +31,14 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.light.begin({1.0, 1.0, 1.0}, channel_quantiles(view_image(s.pyramid)), s.learned_quantiles);
   const Place itself = s.look(reduced, box);
   s.first_score = itself.local.score;
-  s.first_divergence = s.divergence.of(reduced, box).divergence;
-  s.mean_score = s.first_score;
-  s.mean_divergence = s.first_divergence;
+  s.mean_score = s.parameters.doubt.min_found_score * s.first_score;  // it fits no other image as well as its own
+  s.mean_divergence = itself.divergence;
   s.confidence.reset();
   s.box = box;
   s.located = true;
   s.images_since_sight = 0;
-  s.weak_images = 0;
+  s.lost = false;
+  s.presence.confirm();
   s.foreign_images = 0;
   s.images_lost = 0;
 }

@@ -10,6 +10,7 @@
 #include "pipeline/color/track/confidence.h"
 #include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/local_tracker.h"
+#include "pipeline/color/track/presence.h"
 #include "pipeline/imaging/reduce.h"
 #include "platform/box.h"
 #include "platform/error.h"
@@ -32,22 +33,16 @@ constexpr std::string_view to_string(TrackMode mode) {
   return word_in(kTrackModeNames, mode);
 }
 
-/// When the local tracker is doubted, and what makes a place elsewhere in the image more credible. Scores are compared with their running
-/// mean while the object was surely seen, divergences with theirs.
+/// What makes a place elsewhere in the image credible, and when a box holds another object. Scores are compared with their running mean
+/// while the object was surely seen.
 struct DoubtParameters {
   int warm_up_images = 8;
   double mean_rate = 0.05;
-  double min_sure_sharpness = 8.0;
   double min_sure_score = 0.8;
-  double min_sharp_score = 0.3;
-  double max_divergence_rise = 0.1;
   double min_agreement = 0.62;
   int max_foreign_images = 5;
-  int max_doubtful_images = 3;
-  double min_stay_sharpness = 8.0;
-  double min_stay_score = 0.7;
-  double min_reacquire_score = 0.75;
-  double min_reacquire_agreement = 0.9;
+  double min_reacquire_log_odds = 1.7;
+  double min_reacquire_agreement = 0.8;
   double min_found_sharpness = 14.0;
   double min_found_score = 0.45;
   double min_found_agreement = 0.86;
@@ -55,34 +50,20 @@ struct DoubtParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("warm_up_images", self.warm_up_images, {0, 1000}, "",
-                 "The number of images after a detection in which the running means are not used; the thresholds of "
-                 "the first detection apply instead.");
+                 "The number of images after a detection in which the running means follow faster.");
     visit.number("mean_rate", self.mean_rate, {0.0, 1.0}, "",
                  "The weight of each reliable image in the running means.");
-    visit.number("min_sure_sharpness", self.min_sure_sharpness, {0.0, 50.0}, "",
-                 "A response is doubtful when its peak is less sharp than this and both its score and its divergence "
-                 "are bad as well.");
     visit.number("min_sure_score", self.min_sure_score, {0.0, 2.0}, "",
-                 "The score below which a response can be doubtful, as a ratio of the mean score.");
-    visit.number("min_sharp_score", self.min_sharp_score, {0.0, 2.0}, "",
-                 "The score below which even a sharp response can be doubtful, as a ratio of the mean score.");
-    visit.number("max_divergence_rise", self.max_divergence_rise, {0.0, 0.7}, "nat",
-                 "The rise of the divergence above its mean beyond which a response can be doubtful.");
+                 "The score from which the shape alone proves the object whatever its colours, as a ratio of the mean "
+                 "score.");
     visit.number("min_agreement", self.min_agreement, {0.0, 1.0}, "",
-                 "A box that contains less of the learned colours than this holds another object, however reliable the "
-                 "local tracker is.");
+                 "A box that contains less of the learned colours than this, and whose score is low as well, holds "
+                 "another object.");
     visit.number("max_foreign_images", self.max_foreign_images, {1, 1000}, "",
                  "Tracking ends after this many consecutive images with another object in the box.");
-    visit.number("max_doubtful_images", self.max_doubtful_images, {1, 1000}, "",
-                 "The object is lost after this many doubtful images.");
-    visit.number("min_stay_sharpness", self.min_stay_sharpness, {0.0, 50.0}, "",
-                 "The peak sharpness with which the object is found again in the place where it was lost.");
-    visit.number(
-        "min_stay_score", self.min_stay_score, {0.0, 2.0}, "",
-        "The score with which the object is found again in the place where it was lost, as a ratio of the mean score.");
-    visit.number("min_reacquire_score", self.min_reacquire_score, {0.0, 2.0}, "",
-                 "The score with which the object is found again elsewhere with its last appearance, as a ratio of the "
-                 "mean score.");
+    visit.number("min_reacquire_log_odds", self.min_reacquire_log_odds, {-100.0, 100.0}, "",
+                 "The log-odds of presence (color.track.presence) with which the object is found again elsewhere with "
+                 "its last appearance.");
     visit.number("min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
                  "The agreement with the learned colour amounts, corrected for the light, that finding it again "
                  "elsewhere requires.");
@@ -106,6 +87,7 @@ struct TrackParameters {
   SearchParameters search;
   LocalParameters local;
   LightFollowerParameters light;
+  PresenceParameters presence;
   DoubtParameters doubt;
   ConfidenceParameters confidence;
 
@@ -126,7 +108,9 @@ struct TrackParameters {
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");
     visit.section("light", self.light, "The light of the object from image to image");
-    visit.section("doubt", self.doubt, "The criteria by which the tracker's answer is doubted, lost and found again");
+    visit.section("presence", self.presence, "The evidence for the object being where it is followed");
+    visit.section("doubt", self.doubt,
+                  "The criteria by which the object is found again, and another one is told from it");
     visit.section("confidence", self.confidence, "The probability that the box covers the object");
   }
 };

@@ -10,6 +10,9 @@ namespace cgsr::color {
 namespace {
 
 constexpr int kRefinements = 3;
+// Of a window that may be the object as it looked last: one that fits badly gains a few in log-odds.
+constexpr int kRecognitionRounds = 2;
+constexpr double kMinGlanceLogOdds = -1.0;
 // What a window of the search, which fits the object only roughly, must have of what is asked after refinement: most windows without the
 // object end here, at a third of the cost.
 constexpr double kGlanceScore = 0.75;
@@ -33,39 +36,37 @@ Tint Tracker::State::tint(const Box& at) const {
   return tint;
 }
 
-bool Tracker::State::is_weak(const Place& place) const {
-  const DoubtParameters& doubt = parameters.doubt;
-  if (place.divergence <= mean_divergence + doubt.max_divergence_rise) return false;
-  const bool warm = images_since_sight >= doubt.warm_up_images;
-  const double expected = warm ? doubt.min_sure_score * mean_score : doubt.min_found_score * first_score;
-  const bool blunt = place.local.sharpness < doubt.min_sure_sharpness && place.local.score < expected;
-  // Where there is next to no response, the highest of it can be sharp by chance.
-  return blunt || place.local.score < doubt.min_sharp_score * mean_score;
+PresenceMeasures Tracker::State::measures_of(const Place& place) const {
+  return {place.local.score / mean_score, place.local.sharpness, place.divergence - mean_divergence,
+          place.local.color_inside - place.local.color_around};
 }
 
-/// \return whether the object is where it was lost, as when something passed before it.
-bool Tracker::State::stayed(const imaging::ReducedImage& reduced, Place& place) {
-  const DoubtParameters& doubt = parameters.doubt;
-  place = look(reduced, box);
-  return place.local.sharpness >= doubt.min_stay_sharpness && place.local.score >= doubt.min_stay_score * mean_score &&
-         place.divergence <= mean_divergence + doubt.max_divergence_rise &&
-         tint(place.local.box).agreement >= doubt.min_agreement;
-}
-
-/// Elsewhere, but as it looked last. A fast move blurs it, so that its shape says little; its colours must then be all there.
+/// Elsewhere, or where it was lost but in another size, as it looked last. The window that fits best is fitted before it is judged, for the
+/// search knows a few sizes only.
 /// \return whether one of the search's windows is surely the object; else `place` stays as it is.
 bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
                                Place& place) {
-  const DoubtParameters& doubt = parameters.doubt;
   Place best;
+  double most = kMinGlanceLogOdds;
+  const auto consider = [&](const Place& other) {
+    const double log_odds = presence.log_odds(measures_of(other));
+    if (log_odds <= most) return false;
+    best = other;
+    most = log_odds;
+    return true;
+  };
+  bool any = lost && consider(place);
   for (int i = 0; i < matches.count && budget.grant(); ++i) {
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
-    const Place other = look(reduced, centred_on(window, box.width, box.height));
-    if (other.local.score > best.local.score) best = other;
+    any |= consider(look(reduced, centred_on(window, box.width, box.height)));
   }
-  if (best.local.score < doubt.min_reacquire_score * mean_score) return false;
-  if (best.divergence > mean_divergence + doubt.max_divergence_rise) return false;
-  if (tint(best.local.box).agreement < doubt.min_reacquire_agreement) return false;
+  if (!any) return false;
+  for (int round = 0; round < kRecognitionRounds && budget.grant(); ++round) {
+    const Box fitted = grown(best.local.box, local.growth(pyramid, best.local.box), model, parameters.max_size_ratio);
+    if (!consider(look(reduced, fitted))) break;
+  }
+  if (most < parameters.doubt.min_reacquire_log_odds) return false;
+  if (tint(best.local.box).agreement < parameters.doubt.min_reacquire_agreement) return false;
   place = best;
   return true;
 }

@@ -31,7 +31,7 @@ void Tracker::State::keep_colors(const ObjectView& view) {
 
 SearchSize Tracker::State::search_size() const {
   if (parameters.mode == TrackMode::kPlain) return {model.width_px, model.height_px};
-  if (located && !lost()) return {box.width, box.height};
+  if (located && !lost) return {box.width, box.height};
   if (located && images_lost % 2 == 0) return {box.width * lost_scale(), box.height * lost_scale()};
   return {model.width_px * lost_scale(), model.height_px * lost_scale()};
 }
@@ -43,49 +43,54 @@ TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
   return {true, best.box, best.divergence, its_light, its_light};
 }
 
-/// The whole image is searched in any case. Where the object was, the local tracker says how it moved; what it says is doubted by three
-/// measures together, and then it is looked for at the search's best windows, as it looked last and as it was learned: a prior, not a cage.
+/// The whole image is searched in any case. Where the object was, the local tracker says how it moved; when all that it measures speaks against
+/// the object's presence there, it is looked for at the search's best windows, as it looked last and as it was learned: a prior, not a
+/// cage. What was lost is still looked for where it was as well, and nothing is learned meanwhile.
 TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
                                          WorkBudget& budget) {
   light.predict(channel_quantiles(view_image(pyramid)));
   Place place;
-  bool sure = false;
   bool followed = false;
-  if (located && !lost()) {
+  if (located) {
     place = look(reduced, box);
-    followed = !is_weak(place);
-    sure = followed || recognise(reduced, matches, budget, place) || find(reduced, matches, budget, place);
-    weak_images = sure ? 0 : weak_images + 1;
-    if (lost()) return lose();
-  } else {
-    sure = (located && (stayed(reduced, place) || recognise(reduced, matches, budget, place))) ||
-           find(reduced, matches, budget, place);
-    if (!sure) {
+    presence.add(measures_of(place));
+    // What is seen again where it was lost may be something of the same shape: its colours have to be the object's.
+    followed = presence.believed() && (!lost || tint(place.local.box).agreement >= parameters.doubt.min_agreement);
+  }
+  if (!followed) {
+    const bool elsewhere =
+        (located && recognise(reduced, matches, budget, place)) || find(reduced, matches, budget, place);
+    if (!elsewhere) {
+      if (located && !lost) return lose();
       ++images_lost;
       return {};
     }
-    located = true;
-    images_lost = 0;
-    weak_images = 0;
-    foreign_images = 0;
+    presence.confirm();
   }
+  if (lost || !followed) foreign_images = 0;
+  located = true;
+  lost = false;
+  images_lost = 0;
 
-  Box now = place.local.box;
-  if (sure) now = grown(now, local.growth(pyramid, now), model, parameters.max_size_ratio);
+  const Box now = grown(place.local.box, local.growth(pyramid, place.local.box), model, parameters.max_size_ratio);
   box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
   const Tint seen = tint(box);
   light.update(seen.quantiles, seen.gain, seen.agreement);
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
-  foreign_images = is_foreign(seen, amounts) ? foreign_images + 1 : 0;
-  if (foreign_images >= parameters.doubt.max_foreign_images) return lose();
-  if (sure) learn(place, amounts, followed);
+  foreign_images = is_foreign(place, seen, amounts) ? foreign_images + 1 : 0;
+  if (foreign_images >= parameters.doubt.max_foreign_images) {
+    presence.deny();
+    return lose();
+  }
+  learn(place, amounts, followed);
   ++images_since_sight;
   return answer(place, amounts);
 }
 
-/// The object's colours are missing under every light that it may be in: the one that these colours ask for and the followed one; and
-/// they are not what it has looked like since it was learned either.
-bool Tracker::State::is_foreign(const Tint& seen, const ColorAmounts& amounts) const {
+/// The object's colours are missing under every light that it may be in: the one that these colours ask for and the followed one; they
+/// are not what it has looked like since it was learned either; and the shape does not prove it.
+bool Tracker::State::is_foreign(const Place& place, const Tint& seen, const ColorAmounts& amounts) const {
+  if (place.local.score >= parameters.doubt.min_sure_score * mean_score) return false;
   return std::max({seen.agreement, learned_amounts.agreement(amounts), recent_amounts.agreement(amounts)}) <
          parameters.doubt.min_agreement;
 }
@@ -102,7 +107,7 @@ void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool
 
 /// Nothing that was learned is forgotten: it may be found again where it was lost, or elsewhere, by what it looked like last or first.
 TrackedObject Tracker::State::lose() {
-  weak_images = parameters.doubt.max_doubtful_images;
+  lost = true;
   foreign_images = 0;
   images_lost = 0;
   light.lose();

@@ -7,6 +7,7 @@
 #include "pipeline/color/track/color_agreement.h"
 #include "pipeline/color/track/light_estimate.h"
 #include "pipeline/color/track/light_follower.h"
+#include "pipeline/color/track/presence.h"
 #include "pipeline/color/track/tracker.h"
 
 namespace cgsr::color {
@@ -34,7 +35,8 @@ struct Tracker::State {
         pyramid(max_width_px, max_height_px),
         local(p.local),
         light(p.light),
-        confidence(p.confidence) {
+        confidence(p.confidence),
+        presence(p.presence) {
     learn_from_model();
   }
 
@@ -50,12 +52,10 @@ struct Tracker::State {
     constexpr std::array kScales{1.0, 0.7, 1.4};
     return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
   }
-  [[nodiscard]] bool lost() const { return weak_images >= parameters.doubt.max_doubtful_images; }
-  [[nodiscard]] bool is_foreign(const Tint& seen, const ColorAmounts& amounts) const;
+  [[nodiscard]] bool is_foreign(const Place& place, const Tint& seen, const ColorAmounts& amounts) const;
   void learn(const Place& place, const ColorAmounts& amounts, bool followed);
   TrackedObject lose();
-  [[nodiscard]] bool is_weak(const Place& place) const;
-  bool stayed(const imaging::ReducedImage& reduced, Place& place);
+  [[nodiscard]] PresenceMeasures measures_of(const Place& place) const;
   bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   TrackedObject answer(const Place& place, const ColorAmounts& amounts);
@@ -67,6 +67,7 @@ struct Tracker::State {
   LocalTracker local;
   LightFollower light;
   Confidence confidence;
+  Presence presence;
   ChannelQuantiles learned_quantiles;
   ColorAmounts learned_amounts;
   ColorAmounts recent_amounts;  ///< of the last images, with their light taken out.
@@ -77,11 +78,10 @@ struct Tracker::State {
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  int weak_images = 0;     ///< in a row.
+  bool lost = false;       ///< it was here, and is not seen.
   int images_lost = 0;     ///< in a row.
   int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
-  double first_divergence = 0.0;
 };
 
 }  // namespace cgsr::color
