@@ -100,6 +100,7 @@ Result<CameraMode> V4l2Camera::start() {
 }
 
 Result<CameraMode> V4l2Camera::open_device() {
+  unmap_what_came_back();
   const auto path = locate_(parameters_.device);
   if (!path) {
     return fail(fmt::format("{} is not there: `cgsr devices` lists the cameras of this computer", name()));
@@ -334,7 +335,9 @@ int V4l2Camera::dequeue(Filled& filled) {
   v4l2_buffer buffer = buffer_of(0);
   if (const int error = device_->control(VIDIOC_DQBUF, &buffer); error != 0) return error;
   if (buffer.index >= buffers_->mapped.size()) return EIO;
-  --queued_;
+  filled.on_lease =
+      parameters_.format == StreamFormat::kYuyv && buffers_->slots.on_lease(static_cast<int>(buffer.index));
+  if (!filled.on_lease) --queued_;  // else the driver took one that was not its own
   filled.index = static_cast<int>(buffer.index);
   filled.sequence = buffer.sequence;
   filled.bytes = std::min<std::size_t>(buffer.bytesused, buffers_->mapped[buffer.index].bytes);
@@ -378,6 +381,11 @@ tl::expected<ImageLease, CaptureFailure> V4l2Camera::deliver(const Filled& fille
   alive_at_ = device_->now();
   restarts_in_a_row_ = 0;
   const bool yuyv = parameters_.format == StreamFormat::kYuyv;
+  if (filled.on_lease) {
+    remember(
+        fmt::format("{}: image {} is lost: the driver put it where a reader still has an older one", name(), sequence));
+    return tl::unexpected(CaptureFailure::kNoSlot);
+  }
   if (filled.flagged || filled.bytes == 0 || (yuyv && filled.bytes < image_bytes_)) {
     ++counters_.flagged;
     remember(filled.flagged

@@ -84,6 +84,7 @@ class V4l2Camera final : public Camera {
     std::size_t bytes = 0;
     MonoTime stamp{};
     bool flagged = false;
+    bool on_lease = false;  ///< it was not queued: a reader has it.
   };
 
   Result<CameraMode> open_device();

@@ -36,7 +36,7 @@ Result<void> open_outputs(RobotState& state) {
   const RunOptions& options = state.setup.options;
   const runtime::Schedule& schedule = state.vision.runner->schedule();
   outputs.statistics = &outputs.sinks.add(std::make_unique<sinks::StatisticsSink>(schedule));
-  outputs.sinks.add(std::make_unique<sinks::DigestSink>());
+  outputs.sinks.add(std::make_unique<sinks::DigestSink>(!state.setup.live()));
   outputs.sinks.add(std::make_unique<sinks::LogSink>());
   if (state.setup.config.simulated_camera()) {
     outputs.truth = &outputs.sinks.add(std::make_unique<sinks::TruthSink>(

@@ -51,6 +51,7 @@ struct ScriptedVideo {
   std::atomic<int> skip_next{0};            ///< so many images are lost in the driver.
   std::atomic<int> dequeue_error{0};        ///< answered once.
   std::atomic<bool> source_changed{false};  ///< an event, answered once.
+  std::atomic<bool> fills_any{false};       ///< v4l2loopback: its writer takes buffers by turns, queued or not.
   std::atomic<bool> used_by_another{false};
   std::atomic<int> opened{0};
   std::atomic<int> mapped{0};
@@ -78,13 +79,14 @@ struct ScriptedVideo {
       const MonoTime stamp = due;
       due += period;
       const std::uint32_t number = sequence++;
-      if (skip_next > 0 || queued.empty()) {
+      if (skip_next > 0 || (queued.empty() && !fills_any)) {
         if (skip_next > 0) --skip_next;
         continue;
       }
       v4l2_buffer buffer{};
-      buffer.index = static_cast<std::uint32_t>(queued.front());
-      queued.pop_front();
+      buffer.index =
+          fills_any ? number % static_cast<std::uint32_t>(memory.size()) : static_cast<std::uint32_t>(queued.front());
+      std::erase(queued, static_cast<int>(buffer.index));
       auto& bytes = *memory[buffer.index];
       if (pixel_format == V4L2_PIX_FMT_MJPEG) {
         std::copy(jpeg.begin(), jpeg.end(), bytes.begin());

@@ -329,6 +329,34 @@ TEST_F(V4l2Fault, MemoryOfACameraThatIsGoneIsUnmappedOnceItsReadersAreDone) {
   EXPECT_EQ(kernel.mapped, 0);
 }
 
+// v4l2loopback hands a buffer over again whether or not it was queued. Lent twice, the first return would end both leases, and the memory would be
+// unmapped under the second reader.
+TEST_F(V4l2Fault, ABufferThatAReaderHasIsNotLentAgain) {
+  kernel.fills_any = true;
+  use(small());
+  ASSERT_TRUE(camera->start());
+  auto kept = next();
+  ASSERT_TRUE(kept);
+  int lost = 0;
+  for (int i = 0; i < 3 * small().buffers; ++i) {
+    const auto image = next();
+    if (image) {
+      EXPECT_NE(image->view().data, kept->view().data);
+      EXPECT_GT(image->sequence(), kept->sequence());
+    } else {
+      EXPECT_EQ(image.error(), CaptureFailure::kNoSlot);
+      EXPECT_NE(camera->last_problem().find("where a reader still has an older one"), std::string::npos);
+      ++lost;
+    }
+  }
+  EXPECT_EQ(lost, 3);
+  camera->stop();
+  EXPECT_EQ(kernel.mapped, small().buffers) << "unmapped under its reader";
+  kept = tl::unexpected(CaptureFailure::kTimeout);
+  ASSERT_TRUE(camera->start()) << "memory that is read no more stays mapped";
+  for (int i = 0; i < 3 * small().buffers; ++i) ASSERT_TRUE(next()) << camera->last_problem();
+}
+
 TEST_F(V4l2Fault, SaysWhoHasTheCameraThatIsBusy) {
   use(small());
   kernel.used_by_another = true;

@@ -22,6 +22,7 @@ BASE_STANDS_S = 2.0        # and stands after this one
 STANDS_MPS = 0.02
 FOREIGN = (7, 0)           # what the second commander sends
 MOTION_PERIOD_S = 0.01
+IMAGE_RATE_HZ = 30
 CLOCK_STEP_S = 60.0         # what a wall clock does not do by itself between two lines
 TRACKED = {"round": ("corrected", "pose corrected"), "lamp": ("corrected", "pose corrected")}  # by its column; of the others, the object
 WITHOUT_FAULTS = ("devices", "webcam")  # the job's exit code says it all
@@ -247,6 +248,11 @@ def judge_rows(name, folder, scene, report):
     disorder = sum(b <= a for a, b in zip(numbers, numbers[1:]))
     report.add("images out of order", disorder, "0", disorder == 0)
     report.add("images lost", gaps, "0", gaps == 0)
+    # v4l2loopback numbers no image, so that one that it wrote over shows only in the count.
+    at = {words[0]: time for time, words in marks(folder)}
+    played = sum(at["play"] <= float(row["stamp_s"]) < at["end"] for row in rows)
+    wanted = (at["end"] - at["play"]) * IMAGE_RATE_HZ
+    report.add("images while it played", played, f"{wanted:.0f} ± 2", abs(played - wanted) <= 2)
     column, what = TRACKED.get(name, ("found", "object found"))
     first = next((float(row["stamp_s"]) for row in rows if row[column] == "1"), None)
     report.add("boot to the first tracked image", f"{first:.1f} s" if first else "never", "at most 20 s", first is not None and first <= 20.0)

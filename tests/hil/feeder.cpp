@@ -303,6 +303,7 @@ int main(int argc, char** argv) {
   app.add_option("--images", options.images.file, "images one after another, 640 x 480 YUYV");
   app.add_option("--count", options.images.count, "how many of them; without it as many as the file holds");
   app.add_option("--device", options.images.device, "the video output that they are written into");
+  app.add_option("--buffers", options.images.buffers, "how many buffers the video output is asked for");
   app.add_option("--rate", options.rate_hz, "images per second");
   app.add_option("--can", options.can, "the CAN interface that the simulated Segway is on");
   app.add_option("--controls", options.controls, "the folder of `play` and of the faults");

@@ -16,7 +16,6 @@
 namespace cgsr::hil {
 namespace {
 
-constexpr std::uint32_t kBuffers = 3;  // the device keeps one and shows it again and again while no other comes
 constexpr int kWaitForBuffer_ms = 20;
 
 v4l2_buffer buffer_of(std::uint32_t index) {
@@ -88,7 +87,7 @@ Result<void> ImageFeeder::set_format() {
 
 Result<void> ImageFeeder::make_buffers() {
   v4l2_requestbuffers request{};
-  request.count = kBuffers;
+  request.count = feed_.buffers;
   request.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
   request.memory = V4L2_MEMORY_MMAP;
   if (ioctl(fd_, VIDIOC_REQBUFS, &request) != 0) return failed("VIDIOC_REQBUFS");

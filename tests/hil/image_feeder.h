@@ -15,6 +15,9 @@ struct ImageFeed {
   std::string file;       ///< images one after another, YUYV without padding.
   std::size_t count = 0;  ///< of the images; 0: as many as the file holds.
   std::string device;     ///< a video output: vivid's, or v4l2loopback's.
+  /// Of the output. vivid keeps one and shows it again while no other comes, and each more delays every image; v4l2loopback gives its reader no
+  /// more than these, and fills them by turns, read or not.
+  std::uint32_t buffers = 3;
   int width_px = 640;
   int height_px = 480;
 
