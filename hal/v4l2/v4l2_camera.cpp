@@ -319,6 +319,7 @@ std::optional<tl::expected<ImageLease, CaptureFailure>> V4l2Camera::look(MonoTim
     }
     return std::nullopt;
   }
+  queue_returned();  // what came back while it waited: only so is it known who has what
   Filled filled;
   const int error = dequeue(filled);
   if (error == EAGAIN && !met.error) return std::nullopt;

@@ -51,7 +51,8 @@ struct ScriptedVideo {
   std::atomic<int> skip_next{0};            ///< so many images are lost in the driver.
   std::atomic<int> dequeue_error{0};        ///< answered once.
   std::atomic<bool> source_changed{false};  ///< an event, answered once.
-  std::atomic<bool> fills_any{false};       ///< v4l2loopback: its writer takes buffers by turns, queued or not.
+  std::atomic<int> fills_in_turn{
+      0};  ///< > 0: so many buffers are filled by turns, queued or not, as v4l2loopback does.
   std::atomic<bool> used_by_another{false};
   std::atomic<int> opened{0};
   std::atomic<int> mapped{0};
@@ -79,13 +80,13 @@ struct ScriptedVideo {
       const MonoTime stamp = due;
       due += period;
       const std::uint32_t number = sequence++;
-      if (skip_next > 0 || (queued.empty() && !fills_any)) {
+      if (skip_next > 0 || (queued.empty() && fills_in_turn == 0)) {
         if (skip_next > 0) --skip_next;
         continue;
       }
       v4l2_buffer buffer{};
       buffer.index =
-          fills_any ? number % static_cast<std::uint32_t>(memory.size()) : static_cast<std::uint32_t>(queued.front());
+          static_cast<std::uint32_t>(fills_in_turn > 0 ? static_cast<int>(number) % fills_in_turn : queued.front());
       std::erase(queued, static_cast<int>(buffer.index));
       auto& bytes = *memory[buffer.index];
       if (pixel_format == V4L2_PIX_FMT_MJPEG) {

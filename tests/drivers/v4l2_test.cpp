@@ -5,6 +5,7 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -332,7 +333,7 @@ TEST_F(V4l2Fault, MemoryOfACameraThatIsGoneIsUnmappedOnceItsReadersAreDone) {
 // v4l2loopback hands a buffer over again whether or not it was queued. Lent twice, the first return would end both leases, and the memory would be
 // unmapped under the second reader.
 TEST_F(V4l2Fault, ABufferThatAReaderHasIsNotLentAgain) {
-  kernel.fills_any = true;
+  kernel.fills_in_turn = small().buffers;
   use(small());
   ASSERT_TRUE(camera->start());
   auto kept = next();
@@ -355,6 +356,22 @@ TEST_F(V4l2Fault, ABufferThatAReaderHasIsNotLentAgain) {
   kept = tl::unexpected(CaptureFailure::kTimeout);
   ASSERT_TRUE(camera->start()) << "memory that is read no more stays mapped";
   for (int i = 0; i < 3 * small().buffers; ++i) ASSERT_TRUE(next()) << camera->last_problem();
+}
+
+TEST_F(V4l2Fault, ABufferThatCameBackWhileTheNextImageWasAwaitedIsLentAgain) {
+  kernel.fills_in_turn = 1;
+  use(small());
+  ASSERT_TRUE(camera->start());
+  for (int i = 0; i < 5; ++i) {
+    auto image = next();
+    ASSERT_TRUE(image) << camera->last_problem();
+    std::thread reader([kept = std::move(*image)]() mutable {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      const ImageLease ends = std::move(kept);
+    });
+    EXPECT_TRUE(next()) << camera->last_problem();
+    reader.join();
+  }
 }
 
 TEST_F(V4l2Fault, SaysWhoHasTheCameraThatIsBusy) {
