@@ -14,14 +14,23 @@ namespace {
 using hal::CanFrame;
 using hal::rmp::MessageId;
 
+/// What the base meets on its bus at the moment.
+struct Moment {
+  BaseFaults faults;
+  std::optional<Duration> recorded;  ///< the time of the recording whose motion it says; nothing: its own.
+};
+
 /// The bus as the base meets it, with the faults of the moment on the way.
 class FaultyBus final : public hal::CanBus {
  public:
-  FaultyBus(std::unique_ptr<hal::CanBus> bus, const BaseFaults& faults) : bus_(std::move(bus)), faults_(faults) {}
+  FaultyBus(std::unique_ptr<hal::CanBus> bus, const Moment& moment, RecordedMotion* motion)
+      : bus_(std::move(bus)), faults_(moment.faults), moment_(moment), motion_(motion) {}
 
   Result<void> start() override { return bus_->start(); }
 
-  tl::expected<void, hal::CanSendFailure> send(const CanFrame& frame) override {
+  tl::expected<void, hal::CanSendFailure> send(const CanFrame& own) override {
+    CanFrame frame = own;
+    if (motion_ != nullptr && moment_.recorded) motion_->replace(frame, *moment_.recorded);
     if (faults_.silent) return {};
     if (faults_.powered_off)
       return frame.id == kStatus ? bus_->send(powered_off()) : tl::expected<void, hal::CanSendFailure>{};
@@ -57,17 +66,19 @@ class FaultyBus final : public hal::CanBus {
 
   std::unique_ptr<hal::CanBus> bus_;
   const BaseFaults& faults_;
+  const Moment& moment_;
+  RecordedMotion* motion_;
 };
 
 class SegwayFeeder final : public BaseFeeder {
  public:
-  SegwayFeeder(std::unique_ptr<hal::CanBus> bus, MonoTime now, double keep_s)
-      : base_(std::make_unique<FaultyBus>(std::move(bus), faults_), sim::BaseParameters{}, {.time = now}) {
+  SegwayFeeder(std::unique_ptr<hal::CanBus> bus, MonoTime now, double keep_s, RecordedMotion* motion)
+      : base_(std::make_unique<FaultyBus>(std::move(bus), moment_, motion), sim::BaseParameters{}, {.time = now}) {
     truth_.reserve(static_cast<std::size_t>(keep_s * 100.0));
   }
 
-  void advance_to(MonoTime now, const BaseFaults& faults) override {
-    faults_ = faults;
+  void advance_to(MonoTime now, const BaseFaults& faults, std::optional<Duration> recorded) override {
+    moment_ = {faults, recorded};
     base_.advance_to(now);
     if (truth_.size() < truth_.capacity()) truth_.push_back(base_.state_at(now));
   }
@@ -84,14 +95,15 @@ class SegwayFeeder final : public BaseFeeder {
   }
 
  private:
-  BaseFaults faults_;
+  Moment moment_;
   sim::SimulatedRmp base_;
   std::vector<sim::BaseState> truth_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<BaseFeeder>> BaseFeeder::start(const std::string& interface, MonoTime now, double keep_s) {
+Result<std::unique_ptr<BaseFeeder>> BaseFeeder::start(const std::string& interface, MonoTime now, double keep_s,
+                                                      RecordedMotion* motion) {
   hal::socketcan::SocketCanParameters parameters;
   parameters.interface = interface;
   parameters.bit_rate = 0;
@@ -100,7 +112,7 @@ Result<std::unique_ptr<BaseFeeder>> BaseFeeder::start(const std::string& interfa
   auto bus = std::make_unique<hal::socketcan::SocketCanBus>(parameters, filters, hal::socketcan::make_can_socket());
   if (auto started = bus->start(); !started) return tl::unexpected(started.error());
   bus->stop();  // the base starts it again: only so is its refusal heard
-  return std::make_unique<SegwayFeeder>(std::move(bus), now, keep_s);
+  return std::make_unique<SegwayFeeder>(std::move(bus), now, keep_s, motion);
 }
 
 }  // namespace cgsr::hil

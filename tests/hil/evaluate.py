@@ -242,7 +242,7 @@ def judge_summary(folder, report):
 
 
 def judge_rows(name, folder, scene, report):
-    rows = list(csv.DictReader((folder / "rows.csv").open()))
+    rows = list(csv.DictReader((folder / "rows.csv").read_text().splitlines()))
     numbers = [int(row["frame"]) for row in rows]
     gaps = sum(b - a - 1 for a, b in zip(numbers, numbers[1:]))
     disorder = sum(b <= a for a, b in zip(numbers, numbers[1:]))
@@ -259,7 +259,7 @@ def judge_rows(name, folder, scene, report):
     report.add(what, f"{sum(row[column] == '1' for row in rows)} of {len(rows)} images", "", None)
     reference = scene and scene / "rows.csv"
     if reference and reference.exists():
-        wanted = list(csv.DictReader(reference.open()))
+        wanted = list(csv.DictReader(reference.read_text().splitlines()))
         share = sum(row[column] == "1" for row in wanted) / max(1, len(wanted))
         report.add(f"{what} in the lock-step run", f"{100 * share:.0f} % of its images", "", None)
 

@@ -7,6 +7,9 @@ import sys
 import tempfile
 import unittest
 
+import evaluate
+import faults_table
+
 JUDGE = pathlib.Path(__file__).with_name("evaluate.py")
 DRIVES, STANDS, FOREIGN = "0064000000000000", "0000000000000000", "0007000000000000"
 
@@ -98,6 +101,23 @@ class Judge(unittest.TestCase):
 
     def test_nothing_injected_fails(self):
         self.assertFalse(self.judge(self.drive_until(1.1), [(0.5, "ready")])[0])
+
+    def test_an_image_that_was_written_over_before_it_was_read_is_missed(self):
+        (self.path / "marks.txt").write_text("1010.0 10.00 play\n1012.0 12.00 end\n")
+        for images, right in ((60, True), (57, False)):
+            rows = "".join(f"{i},{10 + i / images * 2:.6f},1\n" for i in range(images))
+            (self.path / "rows.csv").write_text("frame,stamp_s,found\n" + rows)
+            report = evaluate.Report()
+            evaluate.judge_rows("follow", self.path, None, report)
+            self.assertEqual(report.passed, right)
+
+
+class Table(unittest.TestCase):
+    def test_parts_of_a_run_are_joined(self):
+        fault = {"fault": "bus_down", "kind": "latches", "problem": "", "last_motion_s": 0.01, "allowed_s": 0.2, "back_s": 0.3, "stood": True, "met": True}
+        page = faults_table.page([{"run": "faults", "faults": [fault]}, {"run": "faults", "faults": [fault, fault | {"last_motion_s": 0.15, "met": False}]}])
+        self.assertIn("Injections: `tools/hil faults` 3.", page)
+        self.assertIn("| 3 | 0.150 | 0.2 | 0.30 | - | 2 of 3 | 3 of 3 |", page)
 
 
 if __name__ == "__main__":

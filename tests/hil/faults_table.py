@@ -58,7 +58,10 @@ def power_cut_line(runs):
 
 def page(runs):
     results = [result for run in runs for result in run.get("faults", [])]
-    counts = ", ".join(f"`tools/hil {run['run']}` {len(run['faults'])}" for run in runs if run.get("faults"))
+    of_run = {}  # a run may have been done in parts
+    for run in runs:
+        of_run[run["run"]] = of_run.get(run["run"], 0) + len(run.get("faults", []))
+    counts = ", ".join(f"`tools/hil {name}` {count}" for name, count in of_run.items() if count)
     missing = [words for name, words in WORDS.items() if name not in {result["fault"] for result in results}]
     unrun = f"Not injected: {'; '.join(missing)}." if missing else "Every fault of the list was injected."
     return f"Injections: {counts}.\n\n{table(results)}\n\n{unrun} {power_cut_line(runs)}"

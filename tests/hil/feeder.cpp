@@ -43,6 +43,8 @@ struct Options {
   std::string arming_pull;  ///< gpio-sim's file of the line; empty: nobody presses.
   double arm_after_s = 1.5;
   std::string camera;  ///< vivid's, whose images are flagged; empty: none.
+  std::string motion;  ///< what the base says of its motion while the images play; empty: what it does.
+  double end_of_frame_offset_s = 0.025;
   std::string json;
   std::string truth;
   double keep_s = 3600.0;
@@ -53,7 +55,7 @@ struct Controls {
   std::atomic<bool> silent{false};
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> powered_off{false};
-  std::atomic<bool> flagged{false};
+  std::atomic<MonoTime> first_played{MonoTime{}};  ///< when the first image went out; the clock's zero: not yet.
 };
 
 /// What one thread did and what it cost.
@@ -104,7 +106,7 @@ void write_text(const std::string& file, const char* text) {
 /// Images: the first one until `play`, then each once, then the last one.
 class ImageThread {
  public:
-  ImageThread(const Options& options, const Controls& controls)
+  ImageThread(const Options& options, Controls& controls)
       : feeder_(options.images), controls_(controls), period_(seconds(1.0 / options.rate_hz)) {}
 
   Result<void> load() { return feeder_.load(false); }
@@ -122,7 +124,7 @@ class ImageThread {
             {"played", next_},
             {"of", feeder_.images()},
             {"reopened", opened_ - 1},
-            {"first_played_s", to_seconds(first_played_.time_since_epoch())},
+            {"first_played_s", to_seconds(controls_.first_played.load().time_since_epoch())},
             {"cycles", cost.cycles},
             {"worst_lateness_us", to_seconds(cost.worst_lateness) * 1e6},
             {"cpu_us_each", cost.cycles == 0 ? 0.0 : to_seconds(cost.cpu) * 1e6 / static_cast<double>(cost.cycles)}};
@@ -138,7 +140,7 @@ class ImageThread {
     }
     const bool plays = controls_.play.load() && next_ < feeder_.images();
     const std::size_t image = next_ == 0 && !plays ? 0 : plays ? next_ : next_ - 1;
-    if (plays && next_ == 0) first_played_ = at;
+    if (plays && next_ == 0) controls_.first_played.store(at);
     if (auto put = feeder_.put(image); !put) {
       ++refused_;
       return report_once(put.error().message);
@@ -153,20 +155,20 @@ class ImageThread {
   }
 
   ImageFeeder feeder_;
-  const Controls& controls_;
+  Controls& controls_;
   Duration period_;
   std::size_t next_ = 0;
   std::uint64_t written_ = 0;
   std::uint64_t refused_ = 0;
   int opened_ = 0;
   std::string problem_;
-  MonoTime first_played_{};
 };
 
 /// The base, the switch, and a look at the control folder, every 10 ms.
 class BaseThread {
  public:
-  BaseThread(const Options& options, Controls& controls) : options_(options), controls_(controls) {}
+  BaseThread(const Options& options, Controls& controls, RecordedMotion* motion)
+      : options_(options), controls_(controls), motion_(motion) {}
 
   void run() {
     run_ahead_of_all("feed base", 91);
@@ -189,11 +191,20 @@ class BaseThread {
   void step(MonoTime at) {
     look_at_controls();
     if (!base_ && !options_.can.empty()) {
-      if (auto base = BaseFeeder::start(options_.can, at, options_.keep_s)) base_ = std::move(*base);
+      if (auto base = BaseFeeder::start(options_.can, at, options_.keep_s, motion_)) base_ = std::move(*base);
     }
-    if (base_)
-      base_->advance_to(at, {controls_.silent.load(), controls_.emergency_stop.load(), controls_.powered_off.load()});
+    if (base_) {
+      base_->advance_to(at, {controls_.silent.load(), controls_.emergency_stop.load(), controls_.powered_off.load()},
+                        recorded_at(at));
+    }
     if (controls_.play.load()) press(at);
+  }
+
+  /// The robot takes an image's exposure to have begun so much before the driver handed it over: the recorded motion is ahead of the images by that.
+  [[nodiscard]] std::optional<Duration> recorded_at(MonoTime at) const {
+    const MonoTime first = controls_.first_played.load();
+    if (first == MonoTime{}) return std::nullopt;
+    return at - first + seconds(options_.end_of_frame_offset_s);
   }
 
   // Every tenth of a second, and each on a turn of its own: this costs the robot's time.
@@ -207,9 +218,6 @@ class BaseThread {
         break;
       case 6:
         controls_.emergency_stop.store(exists(options_.controls, "estop"));
-        break;
-      case 8:
-        controls_.flagged.store(exists(options_.controls, "flagged"));
         break;
       case 9:
         controls_.powered_off.store(exists(options_.controls, "poweroff"));
@@ -228,21 +236,22 @@ class BaseThread {
 
   const Options& options_;
   Controls& controls_;
+  RecordedMotion* motion_;
   std::unique_ptr<BaseFeeder> base_;
   std::optional<MonoTime> plays_since_;
   bool pressed_ = false;
 };
 
 /// Flags every image of the camera while it is wanted. Both ends of vivid use a press up, so it is pressed often.
-void flag_images(const Options& options, const Controls& controls) {
+void flag_images(const Options& options) {
   constexpr int kPresses = 9;
   FlagButton button(options.camera);
   run_ahead_of_all("feed flags", 89);
   Cost cost;
   std::string problem;
   cycle(kBasePeriod, cost, [&](MonoTime) {
-    if (!controls.flagged.load()) return button.release();
-    for (int i = 0; i < kPresses && controls.flagged.load(); ++i) {
+    if (!exists(options.controls, "flagged")) return button.release();
+    for (int i = 0; i < kPresses; ++i) {
       const auto pressed = button.press();
       if (!pressed && pressed.error().message != problem) {
         problem = pressed.error().message;
@@ -266,8 +275,14 @@ int feed(const Options& options) {
   std::signal(SIGINT, [](int) { stop_requested.store(true); });
   (void)prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);  // to make its memory huge would cost the robot's time
   Controls controls;
+  std::optional<RecordedMotion> motion;
+  if (!options.motion.empty()) {
+    auto loaded = RecordedMotion::load(options.motion);
+    if (!loaded) return fmt::print(stderr, "feeder: {}\n", loaded.error().message), 1;
+    motion = std::move(*loaded);
+  }
   ImageThread images(options, controls);
-  BaseThread base(options, controls);
+  BaseThread base(options, controls, motion ? &*motion : nullptr);
   const bool has_images = !options.images.file.empty();
   if (has_images) {
     if (auto loaded = images.load(); !loaded) return fmt::print(stderr, "feeder: {}\n", loaded.error().message), 1;
@@ -277,7 +292,7 @@ int feed(const Options& options) {
     if (has_images) images.run();
   });
   std::thread flag_thread([&] {
-    if (!options.camera.empty()) flag_images(options, controls);
+    if (!options.camera.empty()) flag_images(options);
   });
   Result<void> outcome;
   if (has_images) outcome = images.load_rest();
@@ -311,6 +326,9 @@ int main(int argc, char** argv) {
   app.add_option("--arm-after", options.arm_after_s, "seconds from `play` until the switch is pressed");
   app.add_option("--camera", options.camera,
                  "the camera, of vivid, whose images are flagged as damaged while `flagged` exists");
+  app.add_option("--motion", options.motion,
+                 "what the base says of its motion while the images play, as the tap wrote it");
+  app.add_option("--end-of-frame-offset", options.end_of_frame_offset_s, "of the robot's file, s");
   app.add_option("--json", options.json, "what was done and what it cost");
   app.add_option("--truth", options.truth, "what the base did");
   CLI11_PARSE(app, argc, argv);

@@ -119,7 +119,8 @@ Result<void> ImageFeeder::take_buffer(std::uint32_t& index) {
   (void)poll(&watched, 1, kWaitForBuffer_ms);
   v4l2_buffer buffer = buffer_of(0);
   if (ioctl(fd_, VIDIOC_DQBUF, &buffer) != 0) return failed("VIDIOC_DQBUF");
-  index = buffer.index;
+  // v4l2loopback names the one that was queued last, and takes any.
+  index = buffer.index == last_ ? (last_ + 1) % static_cast<std::uint32_t>(buffers_.size()) : buffer.index;
   return {};
 }
 
@@ -128,6 +129,7 @@ Result<void> ImageFeeder::queue(std::uint32_t index) {
   buffer.bytesused = static_cast<std::uint32_t>(feed_.bytes());
   buffer.field = V4L2_FIELD_NONE;
   if (ioctl(fd_, VIDIOC_QBUF, &buffer) != 0) return failed("VIDIOC_QBUF");
+  last_ = index;
   if (queued_ == buffers_.size() || ++queued_ < buffers_.size()) return {};
   int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
   if (ioctl(fd_, VIDIOC_STREAMON, &type) != 0) return failed("VIDIOC_STREAMON");

@@ -64,6 +64,7 @@ class ImageFeeder {
   ImageFeed feed_;
   int fd_ = -1;
   std::vector<Buffer> buffers_;
+  std::uint32_t last_ = 0;    ///< the buffer that was queued last.
   std::uint32_t queued_ = 0;  ///< buffers that were ever queued; from the last one on, the device runs.
   const std::uint8_t* data_ = nullptr;
   std::size_t images_ = 0;

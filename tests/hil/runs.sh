@@ -1,10 +1,13 @@
-# The runs of tools/hil by name. Sourced. CGSR_HIL_REPEAT says how often each fault, CGSR_HIL_FAULTS which ones.
+# The runs of tools/hil by name. Sourced. CGSR_HIL_REPEAT says how often each fault, CGSR_HIL_FAULTS which ones; CGSR_HIL_PART names a part of a run
+# that is done in several, which gets a folder of its own (out/hil/NAME-PART): the table of docs/faults.md joins them. CGSR_HIL_CAMERA=loopback takes
+# v4l2loopback for faults that are not the camera's: it costs the host half of what vivid does. CGSR_HIL_MEMORY_MB is the
+# guest's memory beside the images.
 
 # run_hil NAME LONG
 #   timing    images of the scenario from memory, for a minute (where the scenario is shorter, its last image stands); deadlines count
 #   function  the first image stands, so that the robot always has something to follow; faults come
 run_hil() {
-  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1" scene=sim-home-start play_s=60 scene_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb=1024 spent
+  local name="$1" long="$2" start=$SECONDS job="$root/out/hil/$1${CGSR_HIL_PART:+-$CGSR_HIL_PART}" scene=sim-home-start play_s=60 scene_s=60 repeat=1 limit_s=900 camera=vivid script="$1" robot=follow memory_mb="${CGSR_HIL_MEMORY_MB:-1024}" arm_s spent
   spent=$(processor_s)
   case "$name" in
     package) run_package; return ;;
@@ -16,15 +19,17 @@ run_hil() {
     round) scene=sim-home-round robot=sim-home-round script=timing camera=loopback ;;
     lamp) scene=sim-home-lamp robot=sim-home-lamp script=timing camera=loopback ;;
     faults) limit_s=7200; [ "$long" = 0 ] || repeat=10 ;;
-    kill) repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
+    kill) camera=loopback repeat=5 limit_s=7200; [ "$long" = 0 ] || repeat=100 ;;
     *) die "there is no run '$name' (there are: package, devices, webcam, short, profile, follow, round, lamp, faults, kill, power_cut)" ;;
   esac
-  if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1; else scene "$scene" "$scene" "$scene_s"; fi
-  repeat="${CGSR_HIL_REPEAT:-$repeat}"
+  # In the guest the robot of the round knows where it is when the images begin, in lock-step only after 3 s: it starts with both of them.
+  if [ "$name" = round ]; then arm_s=5; else arm_s="$(arming_s "${scene%-start}")"; fi
+  if [ "$scene" = sim-home-start ]; then scene "$scene" sim-home 1 "$arm_s"; else scene "$scene" "$scene" "$scene_s" "$arm_s"; fi
+  repeat="${CGSR_HIL_REPEAT:-$repeat}" camera="${CGSR_HIL_CAMERA:-$camera}"
   local images="$hil/scenes/$scene/images.yuyv"
   memory_mb=$((memory_mb + $(stat -c %s "$images") / 1000000))
-  prepare_job "$job" "$script" "$robot" "$camera" "$play_s" "$repeat" "$(wc -l <"$hil/scenes/$scene/stamps.txt")"
-  say "booting for $name (out/hil/$name/console.txt)"
+  prepare_job "$job" "$script" "$robot" "$camera" "$play_s" "$repeat" "$(wc -l <"$hil/scenes/$scene/stamps.txt")" "$arm_s" "$hil/scenes/$scene/motion.txt"
+  say "booting for $name (${job#"$root"/}/console.txt)"
   local code=0
   ICOUNT="${CGSR_HIL_ICOUNT:-1}" IMAGES="$images" MEMORY_MB="$memory_mb" LIMIT_S="${CGSR_HIL_LIMIT_S:-$limit_s}" bash "$guest/boot.sh" "$hil" "$job" || code=$?
   python3 "$root/tests/hil/evaluate.py" "$name" "$job" --job-code "$code" --scene "$hil/scenes/$scene" || code=1
@@ -61,18 +66,26 @@ run_power_cut() {
   python3 "$root/tests/hil/evaluate.py" power_cut "$job" --job-code "$code" --cuts "$count" --whole "$whole"
 }
 
-# When the arming switch is pressed in the scenario of config/robots/NAME.toml, s.
-arming_s() {
+# The scenario of config/robots/NAME.toml.
+scenario_file() {
   python3 - "config/robots/$1.toml" <<'PYTHON'
 import pathlib, sys, tomllib
 robot = pathlib.Path(sys.argv[1])
-scenario = tomllib.loads((robot.parent / tomllib.loads(robot.read_text())["sim"]["scenario"]).read_text())
+print((robot.parent / tomllib.loads(robot.read_text())["sim"]["scenario"]).resolve())
+PYTHON
+}
+
+# When the arming switch is pressed in it, s.
+arming_s() {
+  python3 - "$(scenario_file "$1")" <<'PYTHON'
+import pathlib, sys, tomllib
+scenario = tomllib.loads(pathlib.Path(sys.argv[1]).read_text())
 print(next(event["from_s"] for event in scenario["line_event"] if event["line"] == "arming"))
 PYTHON
 }
 
 prepare_job() {
-  local job="$1" script="$2" robot="$3" camera="$4" play_s="$5" repeat="$6" count="$7"
+  local job="$1" script="$2" robot="$3" camera="$4" play_s="$5" repeat="$6" count="$7" arm_s="${8:-}" motion="${9:-}"
   rm -rf "$job"
   mkdir -p "$job/root/etc/cgsr" "$job/root/etc/systemd/system/cgsr.service.d" "$job/root/usr/libexec"
   printf 'export PLAY_S=%s REPEAT=%s FAULTS="%s"\n' "$play_s" "$repeat" "${CGSR_HIL_FAULTS:-}" | cat - "$root/tests/hil/jobs/$script.sh" >"$job/run.sh"
@@ -81,9 +94,9 @@ prepare_job() {
   case "$script" in
     devices | webcam) ;;  # the package as it was installed
     timing)
-      echo "ARM_AFTER=$(arming_s "$robot")" >>"$job/env"
+      echo "ARM_AFTER=$arm_s" >>"$job/env"
       mkdir -p "$job/root/usr/share/cgsr-hil"
-      cp -r config "$job/root/usr/share/cgsr-hil/"
+      cp -r config "$motion" "$job/root/usr/share/cgsr-hil/"
       sed "s|@ROBOT@|/usr/share/cgsr-hil/config/robots/$robot.toml|" "$root/tests/hil/robots/timing.toml" >"$job/root/etc/cgsr/robot.toml" ;;
     *) cp "$root/tests/hil/robots/$robot.toml" "$job/root/etc/cgsr/robot.toml" ;;
   esac

@@ -1,13 +1,15 @@
 // The simulated home as a plug-in that also writes down what it delivers, for a virtual robot computer that plays it later. Into the folder that
 // the environment names (CGSR_HIL_TAP): images.yuyv, the images one after another without padding, and stamps.txt, a line for each with its
-// sequence number and its stamp in nanoseconds.
+// sequence number and its stamp in nanoseconds; motion.txt, what the base said of its motion (recorded_motion.h).
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "hal/sim/home/simulated_home.h"
 #include "hal/simulation.h"
@@ -55,6 +57,34 @@ class TappedCamera final : public hal::Camera {
   File stamps_;
 };
 
+/// Writes down what the base says of its motion.
+class TappedBus final : public hal::CanBus {
+ public:
+  TappedBus(std::unique_ptr<hal::CanBus> bus, File file) : bus_(std::move(bus)), file_(std::move(file)) {}
+
+  Result<void> start() override { return bus_->start(); }
+  tl::expected<void, hal::CanSendFailure> send(const hal::CanFrame& frame) override { return bus_->send(frame); }
+  std::size_t receive(MonoTime until, std::span<hal::CanFrame> into) override {
+    const std::size_t count = bus_->receive(until, into);
+    for (const hal::CanFrame& frame : into.first(count)) write(frame);
+    return count;
+  }
+  [[nodiscard]] hal::CanState state() const override { return bus_->state(); }
+  [[nodiscard]] hal::CanCounters counters() const override { return bus_->counters(); }
+  void stop() override { bus_->stop(); }
+
+ private:
+  void write(const hal::CanFrame& frame) {
+    constexpr std::uint16_t kAttitude = 0x401, kIntegrated = 0x404;  // and motion and wheel distances between them
+    if (frame.id < kAttitude || frame.id > kIntegrated) return;
+    fmt::print(file_.get(), "{:x} {} {:02x}\n", frame.id, frame.stamp.time_since_epoch().count(),
+               fmt::join(frame.data, ""));
+  }
+
+  std::unique_ptr<hal::CanBus> bus_;
+  File file_;
+};
+
 class TappedHome final : public hal::Simulation {
  public:
   TappedHome(std::unique_ptr<hal::Simulation> home, std::string folder)
@@ -66,7 +96,11 @@ class TappedHome final : public hal::Simulation {
     if (!images || !stamps) std::abort();
     return std::make_unique<TappedCamera>(home_->take_camera(), std::move(images), std::move(stamps));
   }
-  std::unique_ptr<hal::CanBus> take_can_bus() override { return home_->take_can_bus(); }
+  std::unique_ptr<hal::CanBus> take_can_bus() override {
+    File file(std::fopen((folder_ + "/motion.txt").c_str(), "w"));
+    if (!file) std::abort();
+    return std::make_unique<TappedBus>(home_->take_can_bus(), std::move(file));
+  }
   std::unique_ptr<hal::Switches> take_switches() override { return home_->take_switches(); }
   [[nodiscard]] Duration image_delay() const override { return home_->image_delay(); }
   void advance_to(MonoTime time) override { home_->advance_to(time); }
