@@ -96,7 +96,8 @@ prepare_job() {
     timing)
       echo "ARM_AFTER=$arm_s" >>"$job/env"
       mkdir -p "$job/root/usr/share/cgsr-hil"
-      cp -r config "$motion" "$job/root/usr/share/cgsr-hil/"
+      cp -r config "$job/root/usr/share/cgsr-hil/"
+      [ ! -e "$motion" ] || cp "$motion" "$job/root/usr/share/cgsr-hil/"  # of a scene that was made before it was written: the base says what it does
       sed "s|@ROBOT@|/usr/share/cgsr-hil/config/robots/$robot.toml|" "$root/tests/hil/robots/timing.toml" >"$job/root/etc/cgsr/robot.toml" ;;
     *) cp "$root/tests/hil/robots/$robot.toml" "$job/root/etc/cgsr/robot.toml" ;;
   esac
