@@ -119,6 +119,13 @@ class Table(unittest.TestCase):
         self.assertIn("Injections: `tools/hil faults` 3.", page)
         self.assertIn("| 3 | 0.150 | 0.2 | 0.30 | - | 2 of 3 | 3 of 3 |", page)
 
+    def test_what_was_judged_by_another_expectation_is_left_out(self):
+        fault = {"fault": "bus_down", "kind": "holds", "problem": "", "last_motion_s": 0.01, "allowed_s": 0.2, "back_s": 0.3, "stood": True, "met": True}
+        self.assertNotIn("the CAN interface goes down and up |", faults_table.page([{"run": "faults", "faults": [fault]}]))
+
+    def test_every_fault_has_its_words(self):
+        self.assertEqual(set(faults_table.expectations()), set(faults_table.WORDS))
+
 
 if __name__ == "__main__":
     unittest.main()
