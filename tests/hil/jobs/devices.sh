@@ -9,4 +9,5 @@ sleep 2
 tail -n 3 /run/hil/bus.log
 timeout 2 candump -n 9 can0
 cgsr devices
+systemctl stop cgsr  # which has them
 cgsr check --config /etc/cgsr/robot.toml
