@@ -19,7 +19,7 @@ WORDS = {
     "camera_queue": "the camera's queue fails", "bus_silent": "the base sends nothing for 1 s",
     "bus_down": "the CAN interface goes down and up", "emergency_stop": "emergency stop", "second_commander": "another node sends commands",
     "powered_off": "the base is switched off", "line_gone": "the chip of the arming line goes away and comes back",
-    "vision_paused": "the vision thread gets no processor time for 0.5 s", "vision_hangs": "the vision thread gets no processor time for 2.5 s", "stopped": "SIGTERM", "killed": "the process is killed (SIGKILL)",
+    "vision_hangs": "the vision thread gets no processor time for 1 s", "stopped": "SIGTERM", "killed": "the process is killed (SIGKILL)",
     "hung": "the process hangs (SIGSTOP)", "disk_full": "the disk is full", "memory_pressure": "another process takes the memory",
     "clock_step": "the wall clock is set by an hour",
 }
