@@ -6,7 +6,7 @@ state=/run/hil/state
 mkdir -p $state
 mount -t ext4 /dev/pmem1 $state || { say "power_cut: the file system does not mount"; exit 3; }
 known=$(for kind in webcam recording; do cgsr config new --$kind | sha256sum; done)
-write() { cgsr config new --"$1" --output $state/robot.toml >/dev/null; }
+write() { cgsr config new --force --"$1" --output $state/robot.toml >/dev/null; }
 if [ -e $state/writing ]; then
   left=$(find $state -name 'robot.toml.*' | wc -l)
   if grep -q "$(sha256sum <$state/robot.toml)" <<<"$known"; then say "power_cut: whole, $left files beside it"; else say "power_cut: damaged"; fi
