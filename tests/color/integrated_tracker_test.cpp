@@ -8,6 +8,7 @@
 
 #include "tests/color/ball_scene.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/counted_budget.h"
 
 namespace cgsr::color {
 namespace {
@@ -188,6 +189,70 @@ TEST(IntegratedTracker, ABudgetEndsTheSearchAndIsSaid) {
   const test::QuarterMask mask;
   auto painting = with_ball(kInLight, 1.0);
   EXPECT_FALSE(tight.track(painting.photograph(1.5, 3), mask.view(), budget).exact);
+}
+
+// In images that are alike the search that is spread over them finds what it finds at once, however few units an image has.
+TEST(IntegratedTracker, WithFewUnitsAnImageItFindsTheSameBallLater) {
+  const test::QuarterMask mask;
+  for (const Circle& circle : {kInLight, kInShade}) {
+    auto painting = with_ball(circle, circle.x_px == kInShade.x_px ? kShade : 1.0);
+    const ImageView image = painting.photograph(1.5, 3);
+    const int units = circle.x_px == kInShade.x_px ? 150 : 4;
+    UnlimitedBudget all;
+    IntegratedTracker at_once = tracker();
+    const auto expected = at_once.track(image, mask.view(), all);
+    ASSERT_TRUE(expected.found);
+    IntegratedTracker spread = tracker();
+    BallSighting seen;
+    int images = 0;
+    while (!seen.found && ++images < 3000) {
+      CountedBudget budget(units);
+      seen = spread.track(image, mask.view(), budget);
+      EXPECT_TRUE(seen.found || !seen.exact) << images;
+    }
+    EXPECT_GT(images, 1) << "this test could not fail";
+    ASSERT_TRUE(seen.found);
+    EXPECT_EQ(seen.circle.x_px, expected.circle.x_px);
+    EXPECT_EQ(seen.circle.radius_px, expected.circle.radius_px);
+    EXPECT_EQ(seen.divergence, expected.divergence);
+    EXPECT_EQ(seen.dark, expected.dark);
+  }
+}
+
+TEST(IntegratedTracker, WithFewUnitsAnImageItFindsABallThatMoves) {
+  const test::QuarterMask mask;
+  IntegratedTracker spread = tracker();
+  int first = -1;
+  for (int i = 0; i < 40; ++i) {
+    const Circle moved{40.0 + 2.0 * i, kInLight.y_px, kInLight.radius_px};
+    auto painting = with_ball(moved, 1.0);
+    CountedBudget budget(300);
+    const auto seen = spread.track(painting.photograph(1.5, 200 + static_cast<std::uint32_t>(i)), mask.view(), budget);
+    if (!seen.found) {
+      EXPECT_EQ(first, -1) << "lost in image " << i;
+      continue;
+    }
+    if (first < 0) first = i;
+    EXPECT_GT(overlap(seen.box, test::around(moved)), 0.75) << i;
+  }
+  EXPECT_GT(first, 0) << "this test could not fail";
+  EXPECT_LT(first, 12);
+}
+
+TEST(IntegratedTracker, ABallThatIsFollowedSurelyIsNotSearchedFor) {
+  class Counter final : public WorkBudget {
+   public:
+    bool grant() override { return ++asked > 0; }
+    int asked = 0;
+  };
+  const test::QuarterMask mask;
+  IntegratedTracker one = tracker();
+  for (int i = 0; i < 5; ++i) {
+    auto painting = with_ball({kInLight.x_px + 3.0 * i, kInLight.y_px, kInLight.radius_px}, 1.0);
+    Counter budget;
+    ASSERT_TRUE(one.track(painting.photograph(1.5, 300 + static_cast<std::uint32_t>(i)), mask.view(), budget).found);
+    EXPECT_EQ(budget.asked > 0, i == 0) << i;
+  }
 }
 
 TEST(IntegratedTrackerFault, ImagesThatCannotBeSearchedGiveNothing) {

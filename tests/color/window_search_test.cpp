@@ -207,6 +207,39 @@ TEST(WindowSearch, ABudgetEndsItHonestly) {
   EXPECT_EQ(last, whole.matches[0].divergence);
 }
 
+// In pieces of any size it ends where it ends in one, to the last bit, whatever was begun and left before.
+TEST(WindowSearch, InPiecesItFindsWhatItFindsAtOnce) {
+  FlagWorld world;
+  auto whole = WindowSearch::create(world.model, {}, 320, 240).value();
+  auto pieces = WindowSearch::create(world.model, {}, 320, 240).value();
+  std::mt19937 random(72);
+  for (int trial = 0; trial < 12; ++trial) {
+    auto scene = test::clutter(320, 240, random, 60);
+    test::paint_flag(scene, {20.0 + 20 * trial, 96, 36, 48}, {1.0, 0.8, 0.8});
+    imaging::ReducedImage image(320, 240);
+    ASSERT_TRUE(imaging::reduce(scene.photograph(2.0), 2, whole.labels(), image));
+    SearchRequest request = request_for(world.model);
+    request.candidates = 3;
+    const auto expected = whole.search(image, request).value();
+    ASSERT_TRUE(pieces.begin(image, request));
+    int images = 1;
+    for (CountedBudget budget(1 + trial % 2); !pieces.advance(budget); budget = CountedBudget(1 + trial % 2)) {
+      ASSERT_LT(++images, 10000);
+      if (trial % 3 == 0 && images == 2) {
+        ASSERT_TRUE(pieces.begin(image, request));  // anew
+      }
+    }
+    EXPECT_GT(images, 1) << "this test could not fail";
+    const SearchResult& found = pieces.result();
+    EXPECT_TRUE(found.exact);
+    ASSERT_EQ(found.count, expected.count) << trial;
+    EXPECT_EQ(found.examined, expected.examined);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
+      EXPECT_EQ(found.matches[i], expected.matches[i]) << trial;
+    }
+  }
+}
+
 TEST(WindowSearchFault, SaysWhatItCannotDo) {
   FlagWorld world;
   ColorModel broken = world.model;

@@ -6,8 +6,9 @@
 
 #include "pipeline/color/ball/ball_circle.h"
 #include "pipeline/color/ball/ball_model.h"
+#include "pipeline/color/ball/ball_search.h"
+#include "pipeline/color/ball/image_part.h"
 #include "pipeline/color/search/box_divergence.h"
-#include "pipeline/color/search/window_search.h"
 #include "pipeline/imaging/reduce.h"
 
 namespace cgsr::color {
@@ -23,7 +24,8 @@ constexpr double kBetter = 0.12;      // in score, that a ball elsewhere must be
 constexpr double kInertia = 0.7;      // of the motion from image to image
 constexpr double kUnlike = 1.0;       // a divergence above all that can be
 constexpr double kMostShaded = 0.75;  // of a circle in the mask: the rest is too little to say how it is lit
-constexpr int kLeastSide_px = 32;     // of what is searched for dark histograms
+constexpr int kLeastImage_px = 16;    // of a side
+constexpr int kLookUnits = 300;       // a closer look at a window costs so many groups of windows
 
 Box core_of(const Circle& circle) {
   const double side = kCoreSide * 2.0 * circle.radius_px;
@@ -41,97 +43,9 @@ bool covers(const Circle& circle, double x, double y) {
   return dx * dx + dy * dy < circle.radius_px * circle.radius_px;
 }
 
-/// The first pixel of a mask's column or row.
-int first_pixel(int cell, int cells, int pixels) {
-  return (cell * pixels + cells - 1) / cells;
-}
-
-bool can_be_used(const ShadeMaskView& mask, const ImageView& image) {
-  return !mask.empty() && mask.stride >= mask.width && mask.width <= image.width_px && mask.height <= image.height_px;
-}
-
-/// A rectangle of whole pixels.
-struct Part {
-  int left = 0;
-  int top = 0;
-  int width = 0;
-  int height = 0;
-};
-
-/// \return the first of [from, to) and the length, at least kLeastSide_px where there is so much.
-std::pair<int, int> span_of(int from, int to, int limit) {
-  const int length = std::min(limit, std::max(kLeastSide_px, to - from));
-  return {std::clamp(from, 0, limit - length), length};
-}
-
-/// Of even columns.
-Part part_of(int left, int right, int top, int bottom, const ImageView& image) {
-  const auto [x, width] = span_of(left / 2 * 2, std::min(image.width_px, (right + 1) / 2 * 2), image.width_px);
-  const auto [y, height] = span_of(top, bottom, image.height_px);
-  return {x, y, width, height};
-}
-
-Part part_around(const Box& box, const ImageView& image) {
-  const auto pixel = [](double edge, int limit) { return std::clamp(static_cast<int>(std::lround(edge)), 0, limit); };
-  return part_of(pixel(box.x, image.width_px), pixel(box.x + box.width, image.width_px), pixel(box.y, image.height_px),
-                 pixel(box.y + box.height, image.height_px), image);
-}
-
-/// The part of the image that may lie in shade, of even columns; width 0: nothing does.
-Part shaded_part(const ShadeMaskView& mask, const ImageView& image) {
-  int left = mask.width;
-  int right = 0;
-  int top = mask.height;
-  int bottom = 0;
-  for (int y = 0; y < mask.height; ++y) {
-    const std::uint8_t* row = mask.cells + y * mask.stride;
-    const std::uint8_t* end = row + mask.width;
-    const auto* first = std::find_if(row, end, [](std::uint8_t cell) { return cell != 0; });
-    if (first == end) continue;
-    top = std::min(top, y);
-    bottom = y + 1;
-    left = std::min(left, static_cast<int>(first - row));
-    const std::uint8_t* last = end - 1;
-    while (*last == 0) --last;
-    right = std::max(right, static_cast<int>(last - row) + 1);
-  }
-  if (top >= bottom) return {};
-  return part_of(first_pixel(left, mask.width, image.width_px), first_pixel(right, mask.width, image.width_px),
-                 first_pixel(top, mask.height, image.height_px), first_pixel(bottom, mask.height, image.height_px),
-                 image);
-}
-
-enum class Kept : std::uint8_t { kShaded, kLit };
-
-/// Takes the labels away from what is not kept.
-void keep_only(Kept kept, const ShadeMaskView& mask, const ImageView& image, const Part& part,
-               imaging::ReducedImage& labels) {
-  const int factor = labels.factor;
-  const auto reduced = [factor](int pixel, int start, int limit) {
-    return std::clamp((pixel - start + factor - 1) / factor, 0, limit);
-  };
-  for (int y = 0; y < labels.height_px; ++y) {
-    const int cell_y = std::min((part.top + y * factor) * mask.height / image.height_px, mask.height - 1);
-    const std::uint8_t* cells = mask.cells + cell_y * mask.stride;
-    std::uint16_t* row = labels.labels.data() + static_cast<std::ptrdiff_t>(y) * labels.width_px;
-    int cell = part.left * mask.width / image.width_px;
-    int from = 0;
-    while (from < labels.width_px && cell < mask.width) {
-      const bool shaded = cells[cell] != 0;
-      do ++cell;
-      while (cell < mask.width && (cells[cell] != 0) == shaded);
-      const int to = cell == mask.width
-                         ? labels.width_px
-                         : reduced(first_pixel(cell, mask.width, image.width_px), part.left, labels.width_px);
-      if (shaded != (kept == Kept::kShaded) && to > from) std::fill(row + from, row + to, std::uint16_t{0});
-      from = std::max(from, to);
-    }
-  }
-}
-
-ImageView cut(const ImageView& image, const Part& part) {
-  return {image.row(part.top) + std::ptrdiff_t{2} * part.left, part.width, part.height, image.stride_bytes,
-          image.format};
+bool can_be_searched(const ImageView& image, int max_width_px, int max_height_px) {
+  return image.format == PixelFormat::kYuyv && image.width_px >= kLeastImage_px && image.height_px >= kLeastImage_px &&
+         image.width_px % 2 == 0 && image.width_px <= max_width_px && image.height_px <= max_height_px;
 }
 
 }  // namespace
@@ -141,17 +55,15 @@ SizeRange projected_size(const BallParameters& ball, double focal_px) {
 }
 
 struct IntegratedTracker::State {
-  State(BallModel&& ball_model, const IntegratedParameters& p, WindowSearch&& bright, WindowSearch&& dark,
-        int max_width, int max_height)
+  State(BallModel&& ball_model, const IntegratedParameters& p, BallSearch&& both, int max_width, int max_height)
       : parameters(p),
         ball(std::move(ball_model)),
-        bright_search(std::move(bright)),
-        dark_search(std::move(dark)),
+        search(std::move(both)),
         bright_divergence(ball.bright, p.search.divergence),
         dark_divergence(ball.dark, p.search.divergence),
-        bright_labels(max_width, max_height),
-        dark_labels(max_width, max_height),
-        lit_labels(max_width, max_height) {}
+        labels(max_width, max_height),
+        max_width_px(max_width),
+        max_height_px(max_height) {}
 
   struct Likeness {
     double divergence = kUnlike;
@@ -162,37 +74,40 @@ struct IntegratedTracker::State {
     CircleFit fit;
     Likeness likeness;
   };
+  /// Which pixels of a box count.
+  enum class Where : std::uint8_t { kEverywhere, kShaded, kLit };
 
   BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget, const SizeRange& sizes);
-  bool search(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes, BallSighting& seen);
-  void search_dark(const BallPixels& pixels, SearchRequest request, BallSighting& seen);
+  [[nodiscard]] Answer find(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes, BallSighting& seen);
+  void restart_search();
+  [[nodiscard]] SearchRequest request_for(const SizeRange& sizes) const;
   [[nodiscard]] CircleFit follow(BallPixels pixels, const SizeRange& sizes) const;
-  [[nodiscard]] Answer find(BallPixels pixels, WorkBudget& budget, const SizeRange& sizes);
+  [[nodiscard]] Answer best_of_windows(BallPixels pixels, WorkBudget& budget, const SizeRange& sizes);
   [[nodiscard]] const std::uint8_t* colors_under(std::size_t of_light) const { return ball.of_code[of_light].data(); }
   [[nodiscard]] bool is_found(const CircleFit& fit) const;
   [[nodiscard]] bool is_kept(const CircleFit& fit) const;
   void remember(const Answer& answer);
+  void describe(const Answer& answer, const BallPixels& pixels, BallSighting& seen) const;
   [[nodiscard]] Likeness likeness_of(const BallPixels& pixels, const Circle& of);
   [[nodiscard]] bool looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of);
-  [[nodiscard]] double lit_divergence(const BallPixels& pixels, Box box, const WindowSearch& search,
-                                      BoxDivergence& divergence);
+  [[nodiscard]] BoxDivergence::Answer bright_of(const BallPixels& pixels, const Box& box, Where where);
+  [[nodiscard]] BoxDivergence::Answer dark_of(const BallPixels& pixels, const Box& box, Where where);
+  [[nodiscard]] BoxDivergence::Answer divergence_of(const BallPixels& pixels, Box box, Where where,
+                                                    const imaging::LabelTable& table, BoxDivergence& divergence);
 
   IntegratedParameters parameters;
   BallModel ball;
-  WindowSearch bright_search;
-  WindowSearch dark_search;
+  BallSearch search;
   BoxDivergence bright_divergence;
   BoxDivergence dark_divergence;
-  imaging::ReducedImage bright_labels;
-  imaging::ReducedImage dark_labels;  // of dark_part
-  imaging::ReducedImage lit_labels;   // of what is surely lit about a circle
+  imaging::ReducedImage labels;  // about a circle
   SizeRange usual_sizes;
   double size_step = 1.0;
+  int max_width_px;
+  int max_height_px;
 
   // Of the image under way.
-  Part dark_part;
-  SearchResult bright_matches;
-  SearchResult dark_matches;
+  int factor = 2;  // of the reduced image
 
   // From image to image.
   bool located = false;
@@ -201,6 +116,8 @@ struct IntegratedTracker::State {
   double motion_x_px = 0.0;
   double motion_y_px = 0.0;
   int images_without = 0;
+  Installments next_look;
+  int next_window = 0;  // of the search that is at its end, to be looked at
 };
 
 bool IntegratedTracker::State::is_found(const CircleFit& fit) const {
@@ -214,48 +131,35 @@ bool IntegratedTracker::State::is_kept(const CircleFit& fit) const {
          fit.around <= p.max_around + kMoreAround;
 }
 
-/// \return whether the image is one that can be searched.
-bool IntegratedTracker::State::search(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes,
-                                      BallSighting& seen) {
-  bright_matches = {};
-  dark_matches = {};
+SearchRequest IntegratedTracker::State::request_for(const SizeRange& sizes) const {
   // The smallest window fits into the smallest ball, the others are larger by one step each.
   SearchRequest request;
   request.width_px = std::max(4.0, kCoreSide * sizes.min_px * std::pow(size_step, (parameters.search.sizes - 1) / 2));
   request.height_px = request.width_px;
   request.max_divergence = parameters.max_divergence;
   request.candidates = parameters.candidates;
-  request.budget = &budget;
-  const ImageView& image = pixels.image;
-  const int factor = imaging::reduction_for(image.width_px, image.height_px, sizes.min_px);
-  if (!imaging::reduce(image, factor, bright_search.labels(), bright_labels)) return false;
-  bright_matches = bright_search.search(bright_labels, request).value_or(SearchResult{});
-  seen.bright_windows = bright_matches.windows;
-  seen.bright_examined = bright_matches.examined;
-  seen.exact = bright_matches.exact;
-  search_dark(pixels, request, seen);
-  return true;
+  return request;
 }
 
-void IntegratedTracker::State::search_dark(const BallPixels& pixels, SearchRequest request, BallSighting& seen) {
-  const ImageView& image = pixels.image;
-  dark_part = {0, 0, image.width_px, image.height_px};
-  if (seen.mask_used) dark_part = shaded_part(pixels.mask, image);
-  if (dark_part.width == 0) return;
-  if (!imaging::reduce(cut(image, dark_part), bright_labels.factor, dark_search.labels(), dark_labels)) {
-    dark_part = {};
-    return;
-  }
-  if (seen.mask_used) keep_only(Kept::kShaded, pixels.mask, image, dark_part, dark_labels);
-  dark_matches = dark_search.search(dark_labels, request).value_or(SearchResult{});
-  for (int i = 0; i < dark_matches.count; ++i) {
-    Box& box = dark_matches.matches[static_cast<std::size_t>(i)].box;
-    box.x += dark_part.left;
-    box.y += dark_part.top;
-  }
-  seen.dark_windows = dark_matches.windows;
-  seen.dark_examined = dark_matches.examined;
-  seen.exact = seen.exact && dark_matches.exact;
+void IntegratedTracker::State::restart_search() {
+  search.abandon();
+  next_window = 0;
+}
+
+/// Goes on with the search; when it is at its end, the windows are looked at closely in this image.
+IntegratedTracker::State::Answer IntegratedTracker::State::find(const BallPixels& pixels, WorkBudget& budget,
+                                                                const SizeRange& sizes, BallSighting& seen) {
+  const auto progress = search.advance(pixels.image, pixels.mask, request_for(sizes), sizes.min_px, budget);
+  seen.bright_windows = search.bright().windows;
+  seen.bright_examined = search.bright().examined;
+  seen.dark_windows = search.dark().windows;
+  seen.dark_examined = search.dark().examined;
+  seen.exact = progress == BallSearch::Progress::kAtEnd;
+  if (!seen.exact) return {};
+  const Answer best = best_of_windows(pixels, budget, sizes);
+  seen.exact = next_window == search.bright().count + search.dark().count;
+  if (seen.exact || best.fit.agreement > 0.0) restart_search();
+  return best;
 }
 
 /// Near where it was last, moving on as it moved.
@@ -269,24 +173,25 @@ CircleFit IntegratedTracker::State::follow(BallPixels pixels, const SizeRange& s
   return fit_circle(pixels, middle.x_px, middle.y_px, near);
 }
 
-/// The best circle at one of the windows of both searches.
-IntegratedTracker::State::Answer IntegratedTracker::State::find(BallPixels pixels, WorkBudget& budget,
-                                                                const SizeRange& sizes) {
+/// The best circle at those windows of both searches that have not been looked at yet.
+IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallPixels pixels, WorkBudget& budget,
+                                                                           const SizeRange& sizes) {
   Answer best;
-  for (const SearchResult* matches : {&bright_matches, &dark_matches}) {
-    for (int i = 0; i < matches->count; ++i) {
-      const Match& match = matches->matches[static_cast<std::size_t>(i)];
-      const Box& box = match.box;
-      const double x = box.x + 0.5 * box.width;
-      const double y = box.y + 0.5 * box.height;
-      if (best.fit.agreement > 0.0 && covers(best.fit.circle, x, y)) continue;
-      if (!budget.grant()) return best;
-      pixels.of_code = colors_under(static_cast<std::size_t>(match.light) % ball.of_code.size());
-      const CircleFit fit = fit_circle(pixels, x, y, sizes);
-      if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
-      const Likeness likeness = likeness_of(pixels, fit.circle);
-      if (likeness.divergence <= parameters.max_found_divergence) best = {fit, likeness};
-    }
+  const SearchResult& bright = search.bright();
+  const SearchResult& dark = search.dark();
+  for (; next_window < bright.count + dark.count; ++next_window) {
+    const Match& match = next_window < bright.count
+                             ? bright.matches[static_cast<std::size_t>(next_window)]
+                             : dark.matches[static_cast<std::size_t>(next_window - bright.count)];
+    const double x = match.box.x + 0.5 * match.box.width;
+    const double y = match.box.y + 0.5 * match.box.height;
+    if (best.fit.agreement > 0.0 && covers(best.fit.circle, x, y)) continue;
+    if (!next_look.pay(kLookUnits, budget)) return best;
+    pixels.of_code = colors_under(static_cast<std::size_t>(match.light) % ball.of_code.size());
+    const CircleFit fit = fit_circle(pixels, x, y, sizes);
+    if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
+    const Likeness likeness = likeness_of(pixels, fit.circle);
+    if (likeness.divergence <= parameters.max_found_divergence) best = {fit, likeness};
   }
   return best;
 }
@@ -309,15 +214,11 @@ void IntegratedTracker::State::remember(const Answer& answer) {
 /// Which histogram fits best what is inside a circle.
 IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const BallPixels& pixels, const Circle& of) {
   if (looks_shaded_in_the_light(pixels, of)) return {};
-  Box core = core_of(of);
-  const auto bright = bright_divergence.of(bright_labels, core);
-  Likeness likeness{bright.divergence, bright.light, false};
-  if (dark_part.width == 0) return likeness;
-  core.x -= dark_part.left;
-  core.y -= dark_part.top;
-  const auto dark = dark_divergence.of(dark_labels, core);
-  if (dark.divergence < likeness.divergence) likeness = {dark.divergence, dark.light, true};
-  return likeness;
+  const Box core = core_of(of);
+  const auto bright = bright_of(pixels, core, Where::kEverywhere);
+  const auto dark = dark_of(pixels, core, Where::kShaded);
+  if (dark.divergence < bright.divergence) return {dark.divergence, dark.light, true};
+  return {bright.divergence, bright.light, false};
 }
 
 /// Is what lies outside the mask nearer to a dark histogram than to every bright one? Then it is something darker than the ball, however near
@@ -325,35 +226,54 @@ IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const B
 bool IntegratedTracker::State::looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of) {
   if (pixels.mask.empty() || shade_share(pixels, of) > kMostShaded) return false;
   const Box core = core_of(of);
-  return lit_divergence(pixels, core, dark_search, dark_divergence) <
-         lit_divergence(pixels, core, bright_search, bright_divergence);
+  return dark_of(pixels, core, Where::kLit).divergence < bright_of(pixels, core, Where::kLit).divergence;
 }
 
-/// Of a box without what may lie in shade.
-double IntegratedTracker::State::lit_divergence(const BallPixels& pixels, Box box, const WindowSearch& search,
-                                                BoxDivergence& divergence) {
-  const Part part = part_around(box, pixels.image);
-  if (!imaging::reduce(cut(pixels.image, part), bright_labels.factor, search.labels(), lit_labels)) return kUnlike;
-  keep_only(Kept::kLit, pixels.mask, pixels.image, part, lit_labels);
+BoxDivergence::Answer IntegratedTracker::State::bright_of(const BallPixels& pixels, const Box& box, Where where) {
+  return divergence_of(pixels, box, where, search.bright_table(), bright_divergence);
+}
+
+BoxDivergence::Answer IntegratedTracker::State::dark_of(const BallPixels& pixels, const Box& box, Where where) {
+  return divergence_of(pixels, box, where, search.dark_table(), dark_divergence);
+}
+
+/// Of those pixels of a box that count; without a mask all do.
+BoxDivergence::Answer IntegratedTracker::State::divergence_of(const BallPixels& pixels, Box box, Where where,
+                                                              const imaging::LabelTable& table,
+                                                              BoxDivergence& divergence) {
+  if (where == Where::kShaded && !pixels.mask.empty()) {
+    // What lies beside the rectangle of all shade is left out; what is lit in it speaks against the ball.
+    const ImagePart shaded = shaded_part(pixels.mask, pixels.image);
+    box = intersection(box, {1.0 * shaded.left, 1.0 * shaded.top, 1.0 * shaded.width, 1.0 * shaded.height});
+    if (box.area() <= 0.0) return {kUnlike, 0};
+  }
+  const ImagePart part = part_around(box, pixels.image);
+  if (!imaging::reduce(cut(pixels.image, part), factor, table, labels)) return {kUnlike, 0};
+  if (where != Where::kEverywhere && !pixels.mask.empty()) {
+    keep_only(where == Where::kLit ? Kept::kLit : Kept::kShaded, pixels.mask, pixels.image, part, labels);
+  }
   box.x -= part.left;
   box.y -= part.top;
-  return divergence.of(lit_labels, box).divergence;
+  return divergence.of(labels, box);
 }
 
 BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
                                             const SizeRange& sizes) {
   BallSighting seen;
   seen.mask_used = can_be_used(mask, image);
+  if (!can_be_searched(image, max_width_px, max_height_px)) return seen;
   const BallPixels pixels{image, colors_under(light), seen.mask_used ? mask : ShadeMaskView{}};
-  if (!search(pixels, budget, sizes, seen)) return seen;
+  factor = imaging::reduction_for(image.width_px, image.height_px, sizes.min_px);
   Answer answer;
   if (located) {
     answer.fit = follow(pixels, sizes);
     if (is_kept(answer.fit)) answer.likeness = likeness_of(pixels, answer.fit.circle);
   }
   bool is_there = answer.likeness.divergence <= parameters.max_kept_divergence;
-  if (!is_there || !is_found(answer.fit)) {
-    const Answer elsewhere = find(pixels, budget, sizes);
+  if (is_there && is_found(answer.fit)) {
+    restart_search();
+  } else {
+    const Answer elsewhere = find(pixels, budget, sizes, seen);
     const bool is_better = elsewhere.fit.score() > (is_there ? answer.fit.score() + kBetter : 0.0);
     if (is_better) {
       if (!covers(circle, elsewhere.fit.circle.x_px, elsewhere.fit.circle.y_px)) images_without = 1;  // no motion
@@ -366,7 +286,13 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
     return seen;
   }
   remember(answer);
-  const Box whole_image{0.0, 0.0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
+  describe(answer, pixels, seen);
+  return seen;
+}
+
+void IntegratedTracker::State::describe(const Answer& answer, const BallPixels& pixels, BallSighting& seen) const {
+  const Box whole_image{0.0, 0.0, static_cast<double>(pixels.image.width_px),
+                        static_cast<double>(pixels.image.height_px)};
   seen.found = true;
   seen.circle = circle;
   seen.box = intersection(box_of(circle), whole_image);
@@ -376,7 +302,6 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
   const ColorModel& model = seen.dark ? ball.dark : ball.bright;
   seen.light = model.lights[static_cast<std::size_t>(answer.likeness.light)];
   seen.shade_share = shade_share(pixels, circle);
-  return seen;
 }
 
 Result<IntegratedTracker> IntegratedTracker::create(const ColorModel& model, const IntegratedParameters& parameters,
@@ -392,12 +317,9 @@ Result<IntegratedTracker> IntegratedTracker::create(const ColorModel& model, con
   SearchParameters search = parameters.search;
   search.size_step = std::clamp(
       std::pow(usual_sizes.most_px / usual_sizes.min_px, 1.0 / std::max(1, parameters.search.sizes - 1)), 1.01, 2.0);
-  auto bright = WindowSearch::create(ball->bright, search, max_width_px, max_height_px);
-  if (!bright) return tl::unexpected(bright.error());
-  auto dark = WindowSearch::create(ball->dark, search, max_width_px, max_height_px);
-  if (!dark) return tl::unexpected(dark.error());
-  auto state = std::make_unique<State>(std::move(*ball), parameters, std::move(*bright), std::move(*dark), max_width_px,
-                                       max_height_px);
+  auto both = BallSearch::create(*ball, search, max_width_px, max_height_px);
+  if (!both) return tl::unexpected(both.error());
+  auto state = std::make_unique<State>(std::move(*ball), parameters, std::move(*both), max_width_px, max_height_px);
   state->usual_sizes = usual_sizes;
   state->size_step = search.size_step;
   return IntegratedTracker(std::move(state));
@@ -416,6 +338,7 @@ BallSighting IntegratedTracker::track(const ImageView& image, const ShadeMaskVie
 void IntegratedTracker::forget() {
   state_->located = false;
   state_->images_without = 0;
+  state_->restart_search();
 }
 
 }  // namespace cgsr::color

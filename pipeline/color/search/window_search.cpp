@@ -27,6 +27,12 @@ struct WindowSearch::State {
   void push_group(int level, int size, int x, int y, const CellRect& rect);
   void expand(const SearchNode& node);
   void take(const SearchNode& node);
+  bool advance(WorkBudget* budget);
+  void take_what_is_known();
+  /// \return whether something that comes up can still be a match.
+  [[nodiscard]] bool goes_on() const {
+    return !queue.empty() && result.count < request.candidates && queue.front().rank() >= floor_units_;
+  }
   [[nodiscard]] bool is_ruled_out(const SearchNode& node) const;
   [[nodiscard]] bool is_of_interest(int units) const { return units >= min_units_ && units >= floor_units_; }
   [[nodiscard]] const WindowSize& window_size(int size) const { return grid.sizes[WindowGrid::size_at(size)]; }
@@ -177,6 +183,32 @@ void WindowSearch::State::take(const SearchNode& node) {
       grid.box(in_image), divergence_of_units(parameters.divergence, node.rank()), node.light(), node.size()};
 }
 
+/// \param budget  nothing: unlimited. \return false when it refused: the node that it was asked for stays in the queue.
+bool WindowSearch::State::advance(WorkBudget* budget) {
+  while (goes_on()) {
+    const SearchNode node = queue.front();
+    const bool ruled_out = is_ruled_out(node);
+    const bool group = node.level() != kWindowLevel;
+    if (!ruled_out && group && budget != nullptr && !budget->grant()) return false;
+    std::pop_heap(queue.begin(), queue.end());
+    queue.pop_back();
+    if (ruled_out) continue;
+    group ? expand(node) : take(node);
+  }
+  return true;
+}
+
+/// The windows compared so far, without what no budget was left to look into.
+void WindowSearch::State::take_what_is_known() {
+  result.exact = false;
+  while (goes_on()) {
+    std::pop_heap(queue.begin(), queue.end());
+    const SearchNode node = queue.back();
+    queue.pop_back();
+    if (node.level() == kWindowLevel && !is_ruled_out(node)) take(node);
+  }
+}
+
 WindowSearch::WindowSearch(std::unique_ptr<State> state) : state_(std::move(state)) {}
 WindowSearch::WindowSearch(WindowSearch&&) noexcept = default;
 WindowSearch& WindowSearch::operator=(WindowSearch&&) noexcept = default;
@@ -198,22 +230,22 @@ const imaging::LabelTable& WindowSearch::labels() const {
 
 tl::expected<SearchResult, SearchFailure> WindowSearch::search(const imaging::ReducedImage& image,
                                                                const SearchRequest& request) {
-  State& s = *state_;
-  if (const auto begun = s.begin(image, request); !begun) return tl::unexpected(begun.error());
-  while (!s.queue.empty() && s.result.count < request.candidates && s.queue.front().rank() >= s.floor_units_) {
-    std::pop_heap(s.queue.begin(), s.queue.end());
-    const SearchNode node = s.queue.back();
-    s.queue.pop_back();
-    if (s.is_ruled_out(node)) continue;
-    if (node.level() == kWindowLevel) {
-      s.take(node);
-    } else if (s.result.exact && (request.budget == nullptr || request.budget->grant())) {
-      s.expand(node);
-    } else {
-      s.result.exact = false;
-    }
-  }
-  return s.result;
+  if (const auto begun = begin(image, request); !begun) return tl::unexpected(begun.error());
+  if (!state_->advance(request.budget)) state_->take_what_is_known();
+  return state_->result;
+}
+
+tl::expected<void, SearchFailure> WindowSearch::begin(const imaging::ReducedImage& image,
+                                                      const SearchRequest& request) {
+  return state_->begin(image, request);
+}
+
+bool WindowSearch::advance(WorkBudget& budget) {
+  return state_->advance(&budget);
+}
+
+const SearchResult& WindowSearch::result() const {
+  return state_->result;
 }
 
 }  // namespace cgsr::color

@@ -31,6 +31,15 @@ class WindowSearch {
   /// Searches one image. \param image  reduced with labels().
   tl::expected<SearchResult, SearchFailure> search(const imaging::ReducedImage& image, const SearchRequest& request);
 
+  /// Begins to search one image over several calls of advance(), which end where search() without a budget ends, to the last bit.
+  /// \param image  reduced with labels(); stays as it is until the search is at its end. \param request  its budget is not asked.
+  tl::expected<void, SearchFailure> begin(const imaging::ReducedImage& image, const SearchRequest& request);
+  /// Goes on with the search that was begun. \param budget  asked before each group of windows that is looked into.
+  /// \return whether it is at its end; false: the budget refused, the next call goes on from there.
+  bool advance(WorkBudget& budget);
+  /// \return what the search that was begun has found so far.
+  [[nodiscard]] const SearchResult& result() const;
+
  private:
   struct State;
   explicit WindowSearch(std::unique_ptr<State> state);
