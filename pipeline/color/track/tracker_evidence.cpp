@@ -37,7 +37,8 @@ Tint Tracker::State::tint(const Box& at) const {
 }
 
 PresenceMeasures Tracker::State::measures_of(const Place& place) const {
-  return {place.local.score / mean_score, place.local.sharpness, place.divergence - mean_divergence,
+  const double score_ratio = mean_score > 0.0 ? place.local.score / mean_score : 0.0;  // a plain region has no score
+  return {score_ratio, place.local.sharpness, place.divergence - mean_divergence,
           place.local.color_inside - place.local.color_around};
 }
 
