@@ -30,8 +30,8 @@ struct PresenceParameters {
                  "The weight of the logarithm of the score's ratio to its running mean.");
     visit.number("sharpness_weight", self.sharpness_weight, {-100.0, 100.0}, "",
                  "The weight of the logarithm of the peak's sharpness.");
-    visit.number("divergence_weight", self.divergence_weight, {-100.0, 100.0}, "1/nat",
-                 "The weight of the divergence's rise above its running mean.");
+    visit.number("divergence_weight", self.divergence_weight, {-100.0, 100.0}, "",
+                 "The weight of the divergence's rise above its running mean, in nat.");
     visit.number("separation_weight", self.separation_weight, {-100.0, 100.0}, "",
                  "The weight of the difference of the pixel likelihoods inside and around the box.");
     visit.number("memory", self.memory, {0.0, 0.99}, "",
