@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 #include "pipeline/color/ball/ball_model.h"
 #include "pipeline/color/ball/image_part.h"
@@ -74,5 +75,17 @@ class BallSearch {
   SearchResult bright_matches_;
   SearchResult dark_matches_;
 };
+
+constexpr std::string_view to_string(BallSearch::Progress progress) {
+  switch (progress) {
+    case BallSearch::Progress::kImpossible:
+      return "impossible";
+    case BallSearch::Progress::kUnderWay:
+      return "under way";
+    case BallSearch::Progress::kAtEnd:
+      return "at its end";
+  }
+  return "unknown";
+}
 
 }  // namespace cgsr::color

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <string_view>
+
 #include "pipeline/color/ball/shade_mask.h"
 #include "pipeline/imaging/reduce.h"
 #include "platform/box.h"
@@ -28,7 +31,11 @@ ImagePart shaded_part(const ShadeMaskView& mask, const ImageView& image);
 /// \return a view of the part; it owns nothing.
 ImageView cut(const ImageView& image, const ImagePart& part);
 
+/// Which labels stay.
 enum class Kept : std::uint8_t { kShaded, kLit };
+constexpr std::string_view to_string(Kept kept) {
+  return kept == Kept::kShaded ? "shaded" : "lit";
+}
 
 /// Takes the labels away from what is not kept. \param labels  of the part, reduced.
 void keep_only(Kept kept, const ShadeMaskView& mask, const ImageView& image, const ImagePart& part,
