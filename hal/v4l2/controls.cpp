@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -47,8 +46,8 @@ std::string apply_one(VideoDevice& device, const ControlWish& wish) {
   if (!wish.required && !now) return {};
   return fmt::format("{}: {} was requested, {} took effect{} (the camera offers {} to {} in steps of {})", wish.name,
                      wish.value, now ? std::to_string(*now) : "nothing that can be read",
-                     error == 0 ? "" : fmt::format(", {}", std::generic_category().message(error)), range->minimum,
-                     range->maximum, range->step);
+                     error == 0 ? "" : fmt::format(", {}", error_words(error)), range->minimum, range->maximum,
+                     range->step);
 }
 
 constexpr int kMaxControls = 256;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -86,7 +85,7 @@ bool OfferedSize::holds(int width_px, int height_px) const {
 Result<DeviceFacts> facts_of(VideoDevice& device) {
   v4l2_capability capability{};
   if (const int error = device.control(VIDIOC_QUERYCAP, &capability); error != 0) {
-    return fail(fmt::format("no video device ({})", std::generic_category().message(error)));
+    return fail(fmt::format("no video device ({})", error_words(error)));
   }
   const std::uint32_t can =
       (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps : capability.capabilities;
@@ -106,6 +105,10 @@ std::vector<OfferedFormat> offered_formats(VideoDevice& device) {
     formats.push_back({entry.pixelformat, text_of(entry.description), sizes_of(device, entry.pixelformat)});
   }
   return formats;
+}
+
+std::uint32_t fourcc_of(StreamFormat format) {
+  return format == StreamFormat::kYuyv ? V4L2_PIX_FMT_YUYV : V4L2_PIX_FMT_MJPEG;
 }
 
 std::string fourcc_text(std::uint32_t fourcc) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hal/v4l2/parameters.h"
 #include "hal/v4l2/video_device.h"
 #include "platform/error.h"
 
@@ -39,6 +40,9 @@ Result<DeviceFacts> facts_of(VideoDevice& device);
 /// \param device  open. \return every format with its sizes and rates, as far as the driver says; bounded against drivers
 /// whose lists never end.
 std::vector<OfferedFormat> offered_formats(VideoDevice& device);
+
+/// \return what the kernel calls it.
+std::uint32_t fourcc_of(StreamFormat format);
 
 /// \return the four letters, as v4l2-ctl prints them.
 std::string fourcc_text(std::uint32_t fourcc);

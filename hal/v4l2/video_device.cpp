@@ -1,16 +1,18 @@
 #include "hal/v4l2/video_device.h"
 
 #include <fcntl.h>
+#include <linux/videodev2.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/ioctl.h>
 #include <sys/mman.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <ctime>
+#include <system_error>
 
 namespace cgsr::hal::v4l2 {
 namespace {
@@ -91,6 +93,18 @@ class KernelVideoDevice final : public VideoDevice {
 };
 
 }  // namespace
+
+v4l2_buffer capture_buffer(int index) {
+  v4l2_buffer buffer{};
+  buffer.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  buffer.memory = V4L2_MEMORY_MMAP;
+  buffer.index = static_cast<std::uint32_t>(index);
+  return buffer;
+}
+
+std::string error_words(int error) {
+  return std::generic_category().message(error);
+}
 
 std::unique_ptr<VideoDevice> make_video_device() {
   return std::make_unique<KernelVideoDevice>();

@@ -7,6 +7,8 @@
 
 #include "platform/time.h"
 
+struct v4l2_buffer;  // the kernel's
+
 namespace cgsr::hal::v4l2 {
 
 /// What VideoDevice::wait met; several may be true.
@@ -42,6 +44,12 @@ class VideoDevice {
 
   [[nodiscard]] virtual MonoTime now() const = 0;
 };
+
+/// \return one of the capture buffers that the driver has mapped, to be asked about, queued or filled.
+v4l2_buffer capture_buffer(int index);
+
+/// \return the errno in words.
+std::string error_words(int error);
 
 /// The kernel's.
 std::unique_ptr<VideoDevice> make_video_device();
