@@ -108,14 +108,24 @@ constexpr std::array kRenamings{
     Renaming{"y_min_m", "min_y_m"},
 };
 
-// Keys that tasks had of their own.
+constexpr std::string_view kOneSetOfLimits = "one set of limits holds for every task";
+constexpr std::string_view kOneEvidence = "the evidence is weighed as a whole, no measure has a threshold of its own";
+
+// Keys of sections that have moved or become others. These names are no longer keys of any section that is read with them.
 constexpr std::array kMoved{
-    Renaming{"max_acceleration_mps2", "motion.max_acceleration_mps2"},
-    Renaming{"max_backward_mps", "motion.max_backward_mps"},
-    Renaming{"max_deceleration_mps2", "motion.max_deceleration_mps2"},
-    Renaming{"max_forward_mps", "motion.max_forward_mps"},
-    Renaming{"max_turn_acceleration_radps2", "motion.max_turn_acceleration_radps2"},
-    Renaming{"max_turn_radps", "motion.max_turn_radps"},
+    Renaming{"max_acceleration_mps2", "motion.max_acceleration_mps2", kOneSetOfLimits},
+    Renaming{"max_backward_mps", "motion.max_backward_mps", kOneSetOfLimits},
+    Renaming{"max_deceleration_mps2", "motion.max_deceleration_mps2", kOneSetOfLimits},
+    Renaming{"max_divergence_rise", "color.track.presence.divergence_weight", kOneEvidence},
+    Renaming{"max_doubtful_images", "color.track.presence.memory", kOneEvidence},
+    Renaming{"max_forward_mps", "motion.max_forward_mps", kOneSetOfLimits},
+    Renaming{"max_turn_acceleration_radps2", "motion.max_turn_acceleration_radps2", kOneSetOfLimits},
+    Renaming{"max_turn_radps", "motion.max_turn_radps", kOneSetOfLimits},
+    Renaming{"min_reacquire_score", "color.track.doubt.min_reacquire_log_odds", kOneEvidence},
+    Renaming{"min_sharp_score", "color.track.presence.score_weight", kOneEvidence},
+    Renaming{"min_stay_score", "color.track.presence.score_weight", kOneEvidence},
+    Renaming{"min_stay_sharpness", "color.track.presence.sharpness_weight", kOneEvidence},
+    Renaming{"min_sure_sharpness", "color.track.presence.sharpness_weight", kOneEvidence},
 };
 
 /// \return whether a section with the keys `known` has the key, which may lie in one of its sections.
@@ -130,7 +140,7 @@ std::optional<NewName> renamed(std::string_view key, const std::vector<std::stri
     if (renaming.before == key && is_known(renaming.now, known)) return NewName{renaming.now, renaming.remark};
   }
   for (const Renaming& moved : kMoved) {
-    if (moved.before == key) return NewName{moved.now, "one set of limits holds for every task"};
+    if (moved.before == key) return NewName{moved.now, moved.remark};
   }
   return std::nullopt;
 }

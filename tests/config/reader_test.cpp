@@ -120,6 +120,16 @@ TEST(Reader, NamesTheSectionThatAKeyHasMovedTo) {
               testing::HasSubstr("robot.toml:1: max_turn_radps is unknown; it is called motion.max_turn_radps now"));
 }
 
+TEST(Reader, NamesTheWeightThatTookAThresholdsPlace) {
+  const auto document = Document::parse("min_stay_sharpness = 8.0\n", "robot.toml");
+  ASSERT_TRUE(document);
+  const auto limits = read<Limits>(*document);
+  ASSERT_FALSE(limits);
+  EXPECT_THAT(limits.error().message,
+              testing::HasSubstr("robot.toml:1: min_stay_sharpness is unknown; it is called "
+                                 "color.track.presence.sharpness_weight now; the evidence is weighed as a whole"));
+}
+
 // The section decides which of two new names an old one has now.
 TEST(Reader, NamesThePresentNameOfAKeyThatWasRenamed) {
   const auto document = Document::parse("forward_limit_mps = 0.3\nlowest = 1\n", "robot.toml");
