@@ -42,6 +42,9 @@ struct LocalAnswer {
   double sharpness = 0.0;     ///< peak to sidelobe ratio of the shape alone.
   double color_inside = 0.0;  ///< mean likelihood of the box's pixels to be the object's,
   double color_around = 0.0;  ///< and of the other pixels of the patch.
+
+  /// \return how far the colours stand out from what is around, -1..1.
+  [[nodiscard]] double separation() const { return color_inside - color_around; }
 };
 
 /// Knows how the object looks in detail, from the images it was seen in: a correlation filter for its shape, a likelihood per pixel for its colours

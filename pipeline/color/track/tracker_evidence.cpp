@@ -38,8 +38,7 @@ Tint Tracker::State::tint(const Box& at) const {
 
 PresenceMeasures Tracker::State::measures_of(const Place& place) const {
   const double score_ratio = mean_score > 0.0 ? place.local.score / mean_score : 0.0;  // a plain region has no score
-  return {score_ratio, place.local.sharpness, place.divergence - mean_divergence,
-          place.local.color_inside - place.local.color_around};
+  return {score_ratio, place.local.sharpness, place.divergence - mean_divergence, place.local.separation()};
 }
 
 /// Elsewhere, or where it was lost but in another size, as it looked last. The window that fits best is fitted before it is judged, for the

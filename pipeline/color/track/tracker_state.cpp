@@ -116,8 +116,7 @@ TrackedObject Tracker::State::lose() {
 }
 
 TrackedObject Tracker::State::answer(const Place& place, const ColorAmounts& amounts) {
-  const Evidence evidence{place.local.sharpness, learned_amounts.agreement(amounts),
-                          place.local.color_inside - place.local.color_around};
+  const Evidence evidence{place.local.sharpness, learned_amounts.agreement(amounts), place.local.separation()};
   const Light exact = lit(learned_light, light.gain());
   const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
   return {true, intersection(box, image), place.divergence, nearest_of(model, exact), exact, confidence.add(evidence)};
