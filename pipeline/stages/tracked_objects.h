@@ -23,9 +23,9 @@ struct ObjectTrack {
     visit.number("width", when(o.found, o.box.width), {2}, "px", "width of its box");
     visit.number("height", when(o.found, o.box.height), {2}, "px", "height of its box");
     visit.number("divergence", when(o.found, o.divergence), {5}, "nat", "of the box from the learned histogram");
-    visit.number("light_r", when(o.found, o.light.r), {3}, "", "red gain of the light under which it was recognised");
-    visit.number("light_g", when(o.found, o.light.g), {3}, "", "green gain");
-    visit.number("light_b", when(o.found, o.light.b), {3}, "", "blue gain");
+    visit.number("light_r", when(o.found, o.exact_light.r), {3}, "", "red gain of the light that falls on it");
+    visit.number("light_g", when(o.found, o.exact_light.g), {3}, "", "green gain");
+    visit.number("light_b", when(o.found, o.exact_light.b), {3}, "", "blue gain");
     visit.number("confidence", when(o.found && o.confidence > 0.0, o.confidence), {3}, "",
                  "probability that the box covers the object");
   }

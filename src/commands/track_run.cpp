@@ -14,8 +14,8 @@ namespace {
 std::string csv_row(std::uint64_t frame, const color::TrackedObject& object) {
   if (!object.found) return fmt::format("{},0,,,,,,,,,", frame);
   return fmt::format("{},1,{:.2f},{:.2f},{:.2f},{:.2f},{:.5f},{:.3f},{:.3f},{:.3f},{}", frame, object.box.x,
-                     object.box.y, object.box.width, object.box.height, object.divergence, object.light.r,
-                     object.light.g, object.light.b,
+                     object.box.y, object.box.width, object.box.height, object.divergence, object.exact_light.r,
+                     object.exact_light.g, object.exact_light.b,
                      object.confidence > 0.0 ? fmt::format("{:.3f}", object.confidence) : "");
 }
 

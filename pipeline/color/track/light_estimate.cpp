@@ -13,6 +13,11 @@ constexpr double kNoise = 3.0 / 255.0;  // differences below this all weigh the 
 
 using Histogram = std::array<int, 256>;
 
+/// Neither cut off nor black.
+bool is_measurable(double learned, double seen) {
+  return seen <= kSaturated && seen >= kBlack && learned >= kBlack;
+}
+
 /// The quantiles (i + 0.5) / 32 of a histogram, interpolated within a bin.
 std::array<double, ChannelQuantiles::kCount> quantiles_of(const Histogram& histogram, int count) {
   std::array<double, ChannelQuantiles::kCount> quantiles{};
@@ -37,7 +42,7 @@ double gain_of(const std::array<double, ChannelQuantiles::kCount>& learned,
     double product = 0.0;
     double square = 0.0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (seen[i] > kSaturated || seen[i] < kBlack || learned[i] < kBlack) continue;
+      if (!is_measurable(learned[i], seen[i])) continue;
       product += weights[i] * learned[i] * seen[i];
       square += weights[i] * learned[i] * learned[i];
     }
@@ -47,6 +52,18 @@ double gain_of(const std::array<double, ChannelQuantiles::kCount>& learned,
     }
   }
   return gain;
+}
+
+double residual_of(const std::array<double, ChannelQuantiles::kCount>& learned,
+                   const std::array<double, ChannelQuantiles::kCount>& seen, double gain) {
+  double difference = 0.0;
+  double brightness = 0.0;
+  for (std::size_t i = 0; i < learned.size(); ++i) {
+    if (!is_measurable(learned[i], seen[i])) continue;
+    difference += std::abs(seen[i] - gain * learned[i]);
+    brightness += seen[i];
+  }
+  return brightness > 0.0 ? difference / brightness : 1.0;
 }
 
 }  // namespace
@@ -68,6 +85,14 @@ ChannelQuantiles channel_quantiles(const ObjectView& view) {
 Light light_gain(const ChannelQuantiles& learned, const ChannelQuantiles& seen) {
   return {gain_of(learned.values[0], seen.values[0]), gain_of(learned.values[1], seen.values[1]),
           gain_of(learned.values[2], seen.values[2])};
+}
+
+MeasuredGain measured_gain(const ChannelQuantiles& learned, const ChannelQuantiles& seen) {
+  const Light gain = light_gain(learned, seen);
+  return {
+      gain,
+      {residual_of(learned.values[0], seen.values[0], gain.r), residual_of(learned.values[1], seen.values[1], gain.g),
+       residual_of(learned.values[2], seen.values[2], gain.b)}};
 }
 
 Light nearest_of(const ColorModel& model, const Light& light) {

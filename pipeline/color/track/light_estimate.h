@@ -21,6 +21,15 @@ ChannelQuantiles channel_quantiles(const ObjectView& view);
 /// the grid of lights that the search compares with. Ours: the dissertation (3.2.2) knows the light of the best histogram only.
 Light light_gain(const ChannelQuantiles& learned, const ChannelQuantiles& seen);
 
+/// A gain, and per channel what it leaves of the second sight: the mean difference relative to the mean brightness, 1 where a channel says nothing.
+struct MeasuredGain {
+  Light gain{1.0, 1.0, 1.0};
+  Light residual{1.0, 1.0, 1.0};
+};
+
+/// light_gain() with its residual.
+MeasuredGain measured_gain(const ChannelQuantiles& learned, const ChannelQuantiles& seen);
+
 /// \return the light of the model's grid that is nearest to `light`, channel by channel.
 Light nearest_of(const ColorModel& model, const Light& light);
 

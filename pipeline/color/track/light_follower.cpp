@@ -44,6 +44,7 @@ void LightFollower::begin(const Light& gain, const ChannelQuantiles& image, cons
 void LightFollower::predict(const ChannelQuantiles& image) {
   before_ = gain_;
   image_change_ = has_image_ ? plausible(light_gain(image_, image), parameters_.max_step) : kUnchanged;
+  change_ = image_change_;
   const Light now = lit(gain_, image_change_);
   gain_ = {std::clamp(now.r, kDarkest, kBrightest), std::clamp(now.g, kDarkest, kBrightest),
            std::clamp(now.b, kDarkest, kBrightest)};
@@ -54,9 +55,10 @@ void LightFollower::predict(const ChannelQuantiles& image) {
 void LightFollower::update(const ChannelQuantiles& object, const Light& direct, double agreement) {
   if (has_object_) {
     const Light change = plausible(light_gain(object_, object), parameters_.max_step);
-    gain_ = lit(before_, {joined(change.r, image_change_.r, parameters_.agreement_step),
-                          joined(change.g, image_change_.g, parameters_.agreement_step),
-                          joined(change.b, image_change_.b, parameters_.agreement_step)});
+    change_ = {joined(change.r, image_change_.r, parameters_.agreement_step),
+               joined(change.g, image_change_.g, parameters_.agreement_step),
+               joined(change.b, image_change_.b, parameters_.agreement_step)};
+    gain_ = lit(before_, change_);
   }
   const double excess = (agreement - parameters_.min_anchor_agreement) / (1.0 - parameters_.min_anchor_agreement);
   const double weight = parameters_.anchor_rate * std::clamp(excess, 0.0, 1.0);

@@ -58,12 +58,15 @@ class LightFollower {
   void set(const Light& gain) { gain_ = gain; }
 
   [[nodiscard]] const Light& gain() const { return gain_; }
+  /// Since the last image, before any comparison with the learned view.
+  [[nodiscard]] const Light& change() const { return change_; }
 
  private:
   LightFollowerParameters parameters_;
   Light gain_{1.0, 1.0, 1.0};
   Light before_{1.0, 1.0, 1.0};        ///< the gain of the last image,
   Light image_change_{1.0, 1.0, 1.0};  ///< and the whole image's change since.
+  Light change_{1.0, 1.0, 1.0};
   ChannelQuantiles image_;
   ChannelQuantiles object_;
   bool has_image_ = false;

@@ -28,7 +28,9 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.pyramid.build(image);
   s.local.begin(s.pyramid, box);
   s.keep_colors(view_object(s.pyramid, box));
-  s.light.begin({1.0, 1.0, 1.0}, channel_quantiles(view_image(s.pyramid)), s.learned_quantiles);
+  s.image_quantiles = channel_quantiles(view_image(s.pyramid));
+  s.light.begin({1.0, 1.0, 1.0}, s.image_quantiles, s.learned_quantiles);
+  s.illuminant.begin({1.0, 1.0, 1.0}, s.image_quantiles);
   const Place itself = s.look(reduced, box);
   s.first_score = itself.local.score;
   s.mean_score = s.parameters.doubt.min_found_score * s.first_score;  // it fits no other image as well as its own

@@ -8,6 +8,7 @@
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
 #include "pipeline/color/track/confidence.h"
+#include "pipeline/color/track/illuminant_filter.h"
 #include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/local_tracker.h"
 #include "pipeline/color/track/presence.h"
@@ -87,6 +88,7 @@ struct TrackParameters {
   SearchParameters search;
   LocalParameters local;
   LightFollowerParameters light;
+  IlluminantParameters illuminant;
   PresenceParameters presence;
   DoubtParameters doubt;
   ConfidenceParameters confidence;
@@ -107,7 +109,8 @@ struct TrackParameters {
         "the search finds serves when the object is in doubt.");
     visit.section("search", self.search, "The search over the whole image");
     visit.section("local", self.local, "The local tracker");
-    visit.section("light", self.light, "The light of the object from image to image");
+    visit.section("light", self.light, "How the object's colours change with light, side and shading");
+    visit.section("illuminant", self.illuminant, "The light that falls on the object");
     visit.section("presence", self.presence, "The evidence for the object being where it is followed");
     visit.section("doubt", self.doubt,
                   "The criteria by which the object is found again, and another one is told from it");
@@ -120,8 +123,8 @@ struct TrackedObject {
   bool found = false;
   Box box;                  ///< camera pixels, inside the image; read only when found, as all below.
   double divergence = 0.0;  ///< [nat] of the box from the learned histogram, under the light that fits best.
-  Light light;              ///< the light of the grid that fits best; never preferred in the next image (3.2.2).
-  Light exact_light;        ///< the same, not bound to the grid.
+  Light light;  ///< the light of the grid under which its colours fit best; never preferred in the next image (3.2.2).
+  Light exact_light;  ///< the light that falls on it (IlluminantFilter), not bound to the grid.
   double confidence =
       0.0;  ///< probability that the box covers the object (Confidence), 0..1; 0: not estimated, as in mode plain.
 };

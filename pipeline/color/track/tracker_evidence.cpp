@@ -102,6 +102,7 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   place = {best, its_divergence};
   light.set(seen.gain);
   light.lose();
+  if (!located) illuminant.begin(seen.gain, image_quantiles);
   images_since_sight = 0;
   return true;
 }

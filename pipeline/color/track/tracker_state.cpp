@@ -48,7 +48,8 @@ TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
 /// cage. What was lost is still looked for where it was as well, and nothing is learned meanwhile.
 TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
                                          WorkBudget& budget) {
-  light.predict(channel_quantiles(view_image(pyramid)));
+  image_quantiles = channel_quantiles(view_image(pyramid));
+  light.predict(image_quantiles);
   Place place;
   bool followed = false;
   if (located) {
@@ -61,6 +62,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     const bool elsewhere =
         (located && recognise(reduced, matches, budget, place)) || find(reduced, matches, budget, place);
     if (!elsewhere) {
+      illuminant.add(image_quantiles, light.change(), std::nullopt);
       if (located && !lost) return lose();
       ++images_lost;
       return {};
@@ -76,6 +78,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
   const Tint seen = tint(box);
   light.update(seen.quantiles, seen.gain, seen.agreement);
+  illuminant.add(image_quantiles, light.change(), measured_gain(learned_quantiles, seen.quantiles));
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
   foreign_images = is_foreign(place, seen, amounts) ? foreign_images + 1 : 0;
   if (foreign_images >= parameters.doubt.max_foreign_images) {
@@ -117,9 +120,13 @@ TrackedObject Tracker::State::lose() {
 
 TrackedObject Tracker::State::answer(const Place& place, const ColorAmounts& amounts) {
   const Evidence evidence{place.local.sharpness, learned_amounts.agreement(amounts), place.local.separation()};
-  const Light exact = lit(learned_light, light.gain());
   const Box image{0.0, 0.0, static_cast<double>(pyramid.width_px()), static_cast<double>(pyramid.height_px())};
-  return {true, intersection(box, image), place.divergence, nearest_of(model, exact), exact, confidence.add(evidence)};
+  return {true,
+          intersection(box, image),
+          place.divergence,
+          nearest_of(model, lit(learned_light, light.gain())),
+          lit(learned_light, illuminant.gain()),
+          confidence.add(evidence)};
 }
 
 }  // namespace cgsr::color

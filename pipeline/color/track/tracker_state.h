@@ -35,6 +35,7 @@ struct Tracker::State {
         pyramid(max_width_px, max_height_px),
         local(p.local),
         light(p.light),
+        illuminant(p.illuminant),
         confidence(p.confidence),
         presence(p.presence) {
     learn_from_model();
@@ -66,6 +67,8 @@ struct Tracker::State {
   imaging::Pyramid pyramid;
   LocalTracker local;
   LightFollower light;
+  IlluminantFilter illuminant;
+  ChannelQuantiles image_quantiles;  ///< of the whole image.
   Confidence confidence;
   Presence presence;
   ChannelQuantiles learned_quantiles;
