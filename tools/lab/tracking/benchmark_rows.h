@@ -21,6 +21,9 @@ std::vector<const TrackerResult*> results_of(const BenchmarkResults& results, st
 /// One pass and robustness: a line per tracker, ours minus CSRT, ours beside the better of KCF and CSRT, per fold, per sequence.
 void add_score_rows(const BenchmarkResults& results, const Folds& folds, std::uint64_t seed, Report& report);
 
+/// The light estimate of the relit variants beside the truth, per kind of change, with a stripe of each.
+void add_light_rows(const BenchmarkResults& results, Report& report);
+
 /// Relit variants: IoU beside constant light per kind of change, and the light estimate.
 void add_relit_rows(const BenchmarkResults& results, std::uint64_t seed, Report& report);
 

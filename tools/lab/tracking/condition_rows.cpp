@@ -28,58 +28,6 @@ void add_relit_row(const std::vector<const TrackerResult*>& results, LightChange
   report.rows.push_back(sampled_row(row, "lost IoU", "", losses, Join::kPaired, seed));
 }
 
-using Pairs = std::vector<LightPair> RelitScore::*;
-
-/// The distinctiveness from which an object's light estimate counts: the median over the objects.
-double median_distinctiveness(const std::vector<const TrackerResult*>& ours) {
-  std::vector<double> values;
-  for (const TrackerResult* result : ours) values.push_back(result->learned.distinctiveness.value_or(0.0));
-  return quantile(values, 0.5);
-}
-
-/// \param change  one kind of light; nothing: all of them.
-void add_light_row(const std::string& row, const std::vector<const TrackerResult*>& ours, Pairs which,
-                   std::optional<LightChange> change, Report& report) {
-  const double least = median_distinctiveness(ours);
-  std::vector<LightPair> pairs;
-  for (const TrackerResult* result : ours) {
-    if (result->learned.distinctiveness.value_or(0.0) < least) continue;
-    for (const auto& [kind, score] : result->relit) {
-      if (change && kind != *change) continue;
-      pairs.insert(pairs.end(), (score.*which).begin(), (score.*which).end());
-    }
-  }
-  const LightScore score = score_lights(pairs);
-  if (score.images == 0) return;
-  const auto images = static_cast<std::size_t>(score.images);
-  report.rows.push_back(plain_row(row, "error per channel", "", score.error, images));
-  if (change != LightChange::kDimming) {  // which keeps its chroma
-    report.rows.push_back(plain_row(row, "chroma correlation", "", score.chroma_correlation, images));
-  }
-}
-
-void add_light_rows(const std::vector<const TrackerResult*>& ours, Report& report) {
-  const double least = median_distinctiveness(ours);
-  const auto counted = std::ranges::count_if(ours, [&](const TrackerResult* result) {
-    return !result->relit.empty() && result->learned.distinctiveness.value_or(0.0) >= least;
-  });
-  if (counted == 0) return;
-  add_light_row("light estimate, not bound to the grid", ours, &RelitScore::exact, {}, report);
-  add_light_row("light estimate, of the grid", ours, &RelitScore::printed, {}, report);
-  add_light_row("always answering .8", ours, &RelitScore::always_0_8, {}, report);
-  add_light_row("always answering the true light of the image before", ours, &RelitScore::always_last, {}, report);
-  for (const LightChange change : kLightChanges) {
-    add_light_row(fmt::format("light estimate, {}", to_string(change)), ours, &RelitScore::exact, change, report);
-  }
-  report.rows.push_back(
-      share_row("light estimate, objects counted", "share", static_cast<int>(counted), static_cast<int>(ours.size())));
-  report.notes.push_back(
-      fmt::format("Light estimates: objects whose distinctiveness is at least the median, {:.3f} nat; relative to "
-                  "image 0, as the truth "
-                  "is; only images with an answer.",
-                  least));
-}
-
 void add_absent_row(const std::string& row, const std::vector<const TrackerResult*>& results, bool was_on_it_only,
                     Report& report) {
   int images = 0, false_claims = 0, before = 0, claims_before = 0, again = 0, sequences = 0;
@@ -121,7 +69,7 @@ void add_relit_rows(const BenchmarkResults& results, std::uint64_t seed, Report&
       add_relit_row(results_of(results, named.name), change, named.name, seed, report);
     }
   }
-  add_light_rows(results_of(results, "ours"), report);
+  add_light_rows(results, report);
 }
 
 void add_absent_rows(const BenchmarkResults& results, Report& report) {

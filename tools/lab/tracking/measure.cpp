@@ -60,8 +60,8 @@ Result<RelitScore> score_relit(const Runner& run, const HashedFilm& changed, con
   score.iou = lab::score(under_changing->boxes(), changed.film.truth).iou;
   score.constant_iou = lab::score(under_constant->boxes(), constant.film.truth).iou;
   const Lights exact = lights_of(*under_changing, &Sighting::exact_light);
-  score.exact = light_pairs(exact, truth);
-  score.printed = light_pairs(lights_of(*under_changing, &Sighting::light), truth);
+  score.printed = light_pairs(exact, truth);
+  score.of_grid = light_pairs(lights_of(*under_changing, &Sighting::light), truth);
   if (exact.empty() || !exact.front()) return score;
   // Both are absolute here, as the tracker's are: relative to what was assumed at learning.
   const Light assumed = *exact.front();

@@ -19,8 +19,8 @@ namespace cgsr::lab {
 struct RelitScore {
   double iou = 0.0;
   double constant_iou = 0.0;
-  std::vector<LightPair> printed;      ///< the light of the grid, as the CSV has it
-  std::vector<LightPair> exact;        ///< between the grid's lights
+  std::vector<LightPair> printed;      ///< the light that falls on the object, as the CSV has it
+  std::vector<LightPair> of_grid;      ///< the light of the grid that fits the object's colours best
   std::vector<LightPair> always_0_8;   ///< what answering .8 on every image gives
   std::vector<LightPair> always_last;  ///< what answering the true light of the image before gives
 };
