@@ -108,16 +108,17 @@ class Report:
 # ---- faults
 
 def cycles_of(all_marks):
-    """The marks of each injected fault: (name, kind, {step: seconds since boot})."""
+    """The marks of each injected fault: (name, kind as the last mark has it, {step: seconds since boot})."""
     found = []
     for time, words in all_marks:
         if len(words) != 3:
             continue
         name, kind, step = words
         if step == "injected" or step in ("not-ready", "not-armed") or not found:
-            found.append((name, kind, {}))
+            found.append([name, kind, {}])
+        found[-1][1] = kind  # of a fault that meets whatever stage runs, only the later marks say which it was
         found[-1][2][step] = time
-    return found
+    return [tuple(cycle) for cycle in found]
 
 
 def judge_fault(name, kind, steps, sent, states):
@@ -182,16 +183,16 @@ def judge_base(result, steps, after, states):
 def judge_faults(folder, report):
     sent, states = commands(folder), base_states(folder)
     results = [judge_fault(*cycle, sent, states) for cycle in cycles_of(marks(folder))]
-    for name in dict.fromkeys(result["fault"] for result in results):
-        own = [result for result in results if result["fault"] == name]
+    for name, kind in dict.fromkeys((result["fault"], result["kind"]) for result in results):
+        own = [result for result in results if (result["fault"], result["kind"]) == (name, kind)]
         met = sum(result["met"] for result in own)
-        key = "longest_gap_s" if own[0]["kind"] == "goes_on" else "last_motion_s"
+        key = "longest_gap_s" if kind == "goes_on" else "last_motion_s"
         worst = max((result.get(key, float("inf")) for result in own), default=None)
-        what = "longest time without motion" if own[0]["kind"] == "goes_on" else "last motion after it"
+        what = "longest time without motion" if kind == "goes_on" else "last motion after it"
         allowed = next((result["allowed_s"] for result in own if "allowed_s" in result), ZERO_WITHIN_S)
-        report.add(f"{name}: {what}", f"{worst:.3f} s", f"at most {allowed} s, {met} of {len(own)}", met == len(own))
+        report.add(f"{name}, {kind}: {what}", f"{worst:.3f} s", f"at most {allowed} s, {met} of {len(own)}", met == len(own))
         for problem in dict.fromkeys(result["problem"] for result in own if result["problem"]):
-            report.add(f"{name}: problem", problem, "none", False)
+            report.add(f"{name}, {kind}: problem", problem, "none", False)
     report.add("faults injected", len(results), "at least one", bool(results))
     return results
 

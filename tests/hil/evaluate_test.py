@@ -56,6 +56,27 @@ class Judge(unittest.TestCase):
         self.assertFalse(self.judge(self.drive_until(1.1, again=1.8), self.steps("camera_frozen", "holds"))[0], "before it ends")
         self.assertFalse(self.judge(self.drive_until(1.1, again=9.0), self.steps("camera_frozen", "holds"))[0], "never again")
 
+    def by_stage(self, kind, again, rearming=()):
+        """One that meets whatever stage runs: only the marks after its end say of which kind it was."""
+        steps = [(1.0, "by_stage injected"), (2.0, "by_stage ended"), (2.5, f"{kind} back"), *((t, f"{kind} {step}") for t, step in rearming)]
+        passed, faults = self.judge(self.drive_until(1.1, again=again), [(t, f"vision_starved {words}") for t, words in steps])
+        self.assertEqual([fault["kind"] for fault in faults], [kind])
+        return passed
+
+    def test_one_that_meets_whatever_stage_runs_is_judged_by_what_it_met(self):
+        arming = ((4.0, "rearming"), (5.0, "rearmed"))
+        self.assertTrue(self.by_stage("holds", 2.3))
+        self.assertFalse(self.by_stage("holds", 1.8), "moved before it ended")
+        self.assertFalse(self.by_stage("holds", 9.0), "did not go on")
+        self.assertTrue(self.by_stage("latches", 4.5, arming))
+        self.assertFalse(self.by_stage("latches", 2.3, arming), "moved without being armed")
+        self.assertFalse(self.by_stage("latches", 4.5), "was not armed again")
+
+    def test_one_that_meets_whatever_stage_runs_and_breaks_off_fails(self):
+        steps = [(1.0, "vision_starved by_stage injected")]
+        self.assertFalse(self.judge(self.drive_until(1.1), steps)[0])
+        self.assertFalse(self.judge(self.drive_until(1.1, again=9.0), [*steps, (2.0, "vision_starved by_stage ended"), (22.0, "vision_starved holds not-back")])[0])
+
     def test_one_that_goes_on_may_not_stop(self):
         self.assertTrue(self.judge(self.drive_until(9.0), self.steps("disk_full", "goes_on"))[0])
         self.assertFalse(self.judge(self.drive_until(1.1, again=1.3), self.steps("disk_full", "goes_on"))[0])
@@ -122,6 +143,13 @@ class Table(unittest.TestCase):
     def test_what_was_judged_by_another_expectation_is_left_out(self):
         fault = {"fault": "bus_down", "kind": "holds", "problem": "", "last_motion_s": 0.01, "allowed_s": 0.2, "back_s": 0.3, "stood": True, "met": True}
         self.assertNotIn("the CAN interface goes down and up |", faults_table.page([{"run": "faults", "faults": [fault]}]))
+
+    def test_one_that_meets_whatever_stage_runs_has_a_row_for_each_kind(self):
+        fault = {"fault": "vision_starved", "kind": "holds", "problem": "", "last_motion_s": 0.13, "allowed_s": 0.2, "back_s": 0.9, "stood": True, "met": True}
+        page = faults_table.page([{"run": "faults", "faults": [fault, fault | {"kind": "latches"}, fault | {"kind": "latches"}, fault | {"kind": "goes_on"}]}])
+        self.assertIn("Injections: `tools/hil faults` 3.", page)
+        self.assertIn("in no stage of the safety chain | stops, goes on by itself | 1 |", page)
+        self.assertIn("in a stage of the safety chain | stops until armed again | 2 |", page)
 
     def test_every_fault_has_its_words(self):
         self.assertEqual(set(faults_table.expectations()), set(faults_table.WORDS))

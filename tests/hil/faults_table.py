@@ -19,11 +19,14 @@ WORDS = {
     "camera_queue": "the camera's queue fails", "bus_silent": "the base sends nothing for 1 s",
     "bus_down": "the CAN interface goes down and up", "emergency_stop": "emergency stop", "second_commander": "another node sends commands",
     "powered_off": "the base is switched off", "line_gone": "the chip of the arming line goes away and comes back",
-    "vision_hangs": "the vision thread gets no processor time for 1 s", "stopped": "SIGTERM", "killed": "the process is killed (SIGKILL)",
+    "vision_starved": "the vision thread gets no processor time for 0.7 s", "stopped": "SIGTERM", "killed": "the process is killed (SIGKILL)",
     "hung": "the process hangs (SIGSTOP)", "disk_full": "the disk is full", "memory_pressure": "another process takes the memory",
     "clock_step": "the wall clock is set by an hour",
 }
 KINDS = {"holds": "stops, goes on by itself", "latches": "stops until armed again", "dies": "commands end; restarted disarmed", "goes_on": "drives on"}
+
+# Of a fault that meets whatever stage runs: what it met.
+MET_BY_STAGE = {("vision_starved", "holds"): ", in no stage of the safety chain", ("vision_starved", "latches"): ", in a stage of the safety chain"}
 
 
 def seconds(values, digits=2):
@@ -35,14 +38,14 @@ def table(results):
     lines = ["| fault | expected | injected | last motion command after it, worst, s | allowed, s | moves again after its end or the arming, worst, s "
              "| base stands after the last command, worst, s | met | stood from 0.2 s after it until its end |",
              "|---|---|---|---|---|---|---|---|---|"]
-    for name in dict.fromkeys(result["fault"] for result in results):
-        own = [result for result in results if result["fault"] == name]
+    for name, kind in dict.fromkeys((result["fault"], result["kind"]) for result in results):
+        own = [result for result in results if (result["fault"], result["kind"]) == (name, kind)]
         allowed = next((r["allowed_s"] for r in own if "allowed_s" in r), "-")
-        if own[0]["kind"] == "goes_on":
+        if kind == "goes_on":
             last, allowed = f"(longest gap {seconds([r.get('longest_gap_s') for r in own], 3)})", f"({allowed})"
         else:
             last = seconds([r.get("last_motion_s") for r in own], 3)
-        lines.append(f"| {WORDS.get(name, name)} | {KINDS.get(own[0]['kind'], own[0]['kind'])} | {len(own)} | {last} | {allowed} "
+        lines.append(f"| {WORDS.get(name, name)}{MET_BY_STAGE.get((name, kind), '')} | {KINDS.get(kind, kind)} | {len(own)} | {last} | {allowed} "
                      f"| {seconds([r.get('back_s') for r in own])} | {seconds([r.get('base_stands_s') for r in own])} "
                      f"| {sum(r['met'] for r in own)} of {len(own)} | {sum(r.get('stood', False) for r in own)} of {len(own)} |")
     return "\n".join(lines)
@@ -63,18 +66,25 @@ def expectations():
     return {row.split()[0]: row.split()[1] for row in rows if row}
 
 
+def counts(result, expected):
+    """Of a fault that meets whatever stage runs, one that broke off before that was known counts too: it failed."""
+    if expected.get(result["fault"]) == "by_stage":
+        return result["kind"] in ("holds", "latches", "by_stage")
+    return expected.get(result["fault"]) == result["kind"]
+
+
 def page(runs):
     """Runs that were judged by another expectation of a fault, or injected one that there is no more, do not count."""
     expected = expectations()
-    runs = [run | {"faults": [r for r in run.get("faults", []) if expected.get(r["fault"]) == r["kind"]]} for run in runs]
+    runs = [run | {"faults": [r for r in run.get("faults", []) if counts(r, expected)]} for run in runs]
     results = [result for run in runs for result in run["faults"]]
     of_run = {}  # a run may have been done in parts
     for run in runs:
         of_run[run["run"]] = of_run.get(run["run"], 0) + len(run.get("faults", []))
-    counts = ", ".join(f"`tools/hil {name}` {count}" for name, count in of_run.items() if count)
+    numbers = ", ".join(f"`tools/hil {name}` {count}" for name, count in of_run.items() if count)
     missing = [words for name, words in WORDS.items() if name not in {result["fault"] for result in results}]
     unrun = f"Not injected: {'; '.join(missing)}." if missing else "Every fault of the list was injected."
-    return f"Injections: {counts}.\n\n{table(results)}\n\n{unrun} {power_cut_line(runs)}"
+    return f"Injections: {numbers}.\n\n{table(results)}\n\n{unrun} {power_cut_line(runs)}"
 
 
 def main():
