@@ -15,7 +15,7 @@ namespace cgsr::hil {
 class RecordedMotion {
  public:
   /// \param file  a line for each message, in the order of time: id (hexadecimal), nanoseconds since the run began, its 8 bytes (hexadecimal).
-  /// \return or the file and the line that is wrong.
+  /// \return or the file and the line that is wrong: what is no such line, or is earlier than the one before; a file without one.
   static Result<RecordedMotion> load(const std::string& file);
 
   /// Puts what was said last at this time of the recording in the place of the frame's bytes. Frames of other messages stay as they are.
