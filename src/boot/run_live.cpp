@@ -34,6 +34,7 @@ class LiveLoops {
         recognition_(recognition),
         housekeeping_(housekeeping),
         devices_(state.devices),
+        real_camera_(state.setup.config.real_camera()),
         clock_(state.clocks.real),
         stop_(stop),
         links_(state.links) {
@@ -44,6 +45,8 @@ class LiveLoops {
   }
 
   void capture() {
+    // Since the first image the computer was busy with memory and threads, for about 0.2 s at 1 GHz, and the camera streamed.
+    if (real_camera_) static_cast<void>(capture_.pass_over_waiting(clock_));
     while (!stop_.requested()) {
       const bool more = capture_.step(clock_.now() + capture_.period() + capture_.period() / 2);
       heartbeats.beat(capture_beat_, clock_.now());
@@ -118,6 +121,7 @@ class LiveLoops {
   tasks::RecognitionTask* recognition_;  // null: nobody is to be identified
   tasks::HousekeepingTask& housekeeping_;
   Devices& devices_;
+  bool real_camera_;
   RealClock& clock_;
   StopRequest& stop_;
   tasks::Links& links_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hal/camera.h"
+#include "platform/clock.h"
 #include "src/tasks/links.h"
 
 namespace cgsr::tasks {
@@ -13,6 +14,11 @@ class CaptureTask {
 
   /// Waits for one image, never past `give_up_at`. \return false when no further image will ever come.
   bool step(MonoTime give_up_at);
+
+  /// Of a camera that has streamed before anybody took its images: gives back what it holds, so that the first image that is handed on is a new one.
+  /// Such images are neither counted nor seen by vision; at most 32 are given back. Not for a recording, which always holds the next one. Ours.
+  /// \return how many were given back.
+  int pass_over_waiting(const Clock& clock);
 
   [[nodiscard]] Duration period() const { return period_; }
 

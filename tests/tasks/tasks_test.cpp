@@ -1,6 +1,9 @@
 // What the tasks around the loops do with what devices and rings give them.
 #include "hal/dummy/dummy_switches.h"
 
+#include <algorithm>
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "src/tasks/capture_task.h"
@@ -14,7 +17,9 @@ namespace {
 class MoodyCamera final : public hal::Camera {
  public:
   Result<hal::CameraMode> start() override { return hal::CameraMode{}; }
-  tl::expected<ImageLease, hal::CaptureFailure> next_image(MonoTime) override {
+  tl::expected<ImageLease, hal::CaptureFailure> next_image(MonoTime give_up_at) override {
+    longest_wait = std::max(longest_wait, give_up_at - MonoTime{});
+    if (waiting && (*waiting)-- == 0) return tl::unexpected(hal::CaptureFailure::kTimeout);
     if (failure) return tl::unexpected(*failure);
     return painted.image(number++);
   }
@@ -23,8 +28,40 @@ class MoodyCamera final : public hal::Camera {
 
   PaintedCamera painted;
   std::optional<hal::CaptureFailure> failure;
+  std::optional<int> waiting;  ///< images that it holds; none: always another one.
   std::uint64_t number = 0;
+  Duration longest_wait{};
 };
+
+TEST(CaptureTask, PassesOverWhatACameraHoldsAtTheStart) {
+  for (const auto failure : {std::optional<hal::CaptureFailure>{}, std::optional(hal::CaptureFailure::kCorrupt)}) {
+    MoodyCamera camera;
+    SimulatedClock clock;
+    Links links;
+    CaptureTask capture(camera, PaintedCamera::kPeriod, links);
+    camera.waiting = 7;
+    camera.failure = failure;
+    EXPECT_EQ(capture.pass_over_waiting(clock), 7) << "damaged ones too";
+    EXPECT_LT(camera.longest_wait, PaintedCamera::kPeriod / 2) << "a new image is not waited for";
+    EXPECT_EQ(links.capture.images + links.capture.timeouts + links.capture.corrupt, 0u) << "no image of the run";
+    camera.waiting.reset();
+    camera.failure.reset();
+    EXPECT_TRUE(capture.step({}));
+    ASSERT_EQ(links.images.statistics().pushed, 1u);
+    EXPECT_EQ(links.images.pop()->sequence(), failure ? 0u : 7u);
+  }
+}
+
+TEST(CaptureTask, PassesOverNoMoreThanACameraCanHoldAndStopsWithOneThatIsGone) {
+  MoodyCamera camera;
+  SimulatedClock clock;
+  Links links;
+  CaptureTask capture(camera, PaintedCamera::kPeriod, links);
+  EXPECT_EQ(capture.pass_over_waiting(clock), 32) << "one that always has another";
+  camera.failure = hal::CaptureFailure::kDisconnected;
+  EXPECT_EQ(capture.pass_over_waiting(clock), 0);
+  EXPECT_FALSE(links.camera_lost) << "the first step says so";
+}
 
 TEST(CaptureTask, CountsEveryWayToFailAndGoesOnWhereItCan) {
   MoodyCamera camera;
