@@ -24,12 +24,17 @@ constexpr double kMinGain = 16.0;        // chi-square that the shadow explains
 constexpr int kMinPlacesBeyond = 3;      // places without shadow behind the tip
 constexpr int kMinSamples = 150;
 constexpr double kModelSigma_m = 0.0006;  // of a tip, by what a penumbra is like beside a cone
+constexpr double kModelShare = 0.4;       // likewise, of the penumbra at the tip
 constexpr double kMaxSigma_m = 0.004;     // of a tip that counts as found
 constexpr double kMaxOut_m = 0.0125;      // where samples end
 constexpr double kMaxSlope = 0.5;         // of the way along: a shadow that turns away further shows both its lines,
 constexpr double kShort_m = 0.006;        // unless it is as short as this
 constexpr double kMaxIn_m = 0.003;
 constexpr double kMaxMove_m = 0.004;  // of the tip in one iteration
+constexpr double kLeastRadius_m = 0.005;
+constexpr double kMostRadius_m = 0.4;
+constexpr double kHeld = 1e4;       // of a weight: the softness stays
+constexpr double kMaxChange = 2.0;  // a factor of the softness in one iteration
 constexpr std::array kNear_px{1.0, 1.7, 2.4};
 constexpr std::array kFar_px{9.0, 11.0, 13.0};
 constexpr float kMinFall = 1.4F;  // grey levels, mean
@@ -42,11 +47,12 @@ constexpr StripModel::Pass kCoarse{.with_shadow = true, .darker_counts = true, .
 constexpr StripModel::Pass kFine{.with_shadow = true, .darker_counts = true, .every = 1, .iterations = 2};
 constexpr StripModel::Pass kShadowRemoved{.with_shadow = false, .darker_counts = true, .every = 1, .iterations = 2};
 
-StripModel::Unknowns prior_weights() {
+StripModel::Unknowns prior_weights(double softness_sigma_m) {
   StripModel::Unknowns weight = StripModel::Unknowns::Constant(1e-9);
   weight[kTipAlong] = weight[kTipOut] = 1.0 / (0.05 * 0.05);
   weight[kSlopeAlong] = weight[kSlopeOut] = weight[kConeSlope] = 1.0 / (100.0 * 100.0);
   weight[kEdge] = weight[kEdgeSlope] = 1.0 / (kEdgeSigma_m * kEdgeSigma_m);
+  weight[kSoftEnd] = 1.0 / (softness_sigma_m * softness_sigma_m);
   return weight;
 }
 
@@ -57,7 +63,9 @@ ConeStrip::ConeStrip(const Board& board, int probe, const ShadowParameters& para
       probe_(board.probe[static_cast<std::size_t>(probe)]),
       index_(probe),
       parameters_(parameters),
-      model_(probe_, parameters, lamp_height_m) {}
+      model_(probe_),
+      softness_per_radius_(softness_per_radius(probe_.p_BA.z(), lamp_height_m)),
+      prior_weight_(prior_weights(softness_per_radius_ * parameters.lamp_radius_sigma_m)) {}
 
 bool ConeStrip::is_seen(const Vector2d& p_B, const std::array<Outline, kMostProbes>& behind) const {
   if (!is_on_board(board_, p_B)) return false;
@@ -259,22 +267,24 @@ std::optional<ConeStrip::Unknowns> ConeStrip::first_guess(const Frame& frame) co
   x[kCone] = static_cast<double>(cone) / cones;
   x[kBoardLevel] = static_cast<double>(board) / boards;
   x[kTipAlong] = 2.0 * probe_.radius_m;
+  x[kSoftEnd] = softness_per_radius_ * std::clamp(parameters_.lamp_radius_m, kLeastRadius_m, kMostRadius_m);
   return x;
 }
 
 // Gauss-Newton with a Gaussian prior on all but the brightness of cone, board and shadow. False when the equations have no solution.
 bool ConeStrip::solve(Fit& fit, const StripModel::Pass& pass) const {
-  static const Unknowns prior_weight = prior_weights();
-  const Unknowns centre = fit.x;
+  Unknowns mean = Unknowns::Zero();
+  mean[kTipAlong] = fit.x[kTipAlong];
+  mean[kTipOut] = fit.x[kTipOut];
+  mean[kSoftEnd] = softness_per_radius_ * parameters_.lamp_radius_m;
   for (int iteration = 0; iteration < pass.iterations; ++iteration) {
     fit.sums = model_.sum_up(fit.x, samples(), pass);
     fit.variance = std::max(kMinVariance, fit.sums.squares / std::max(1.0, fit.sums.weights - StripModel::kUnknowns));
     fit.H = fit.sums.H / (fit.variance * kCorrelation);
     Unknowns g = fit.sums.g / (fit.variance * kCorrelation);
     for (int k = 0; k < StripModel::kUnknowns; ++k) {
-      fit.H(k, k) += prior_weight[k];
-      const double mean = k == kTipAlong || k == kTipOut ? centre[k] : 0.0;
-      if (k != kCone && k != kBoardLevel && k != kShadowDepth) g[k] += prior_weight[k] * (mean - fit.x[k]);
+      fit.H(k, k) += prior_weight_[k];
+      if (k != kCone && k != kBoardLevel && k != kShadowDepth) g[k] += prior_weight_[k] * (mean[k] - fit.x[k]);
     }
     const Eigen::LLT<StripModel::Normal> solver(fit.H);
     if (solver.info() != Eigen::Success) return false;
@@ -282,7 +292,11 @@ bool ConeStrip::solve(Fit& fit, const StripModel::Pass& pass) const {
     if (!change.allFinite()) return false;
     const double move = change.head<2>().norm();
     if (move > kMaxMove_m) change *= kMaxMove_m / move;
+    const double softness_m = fit.x[kSoftEnd];
     fit.x += change;
+    fit.x[kSoftEnd] =
+        std::clamp(fit.x[kSoftEnd], std::max(softness_m / kMaxChange, softness_per_radius_ * kLeastRadius_m),
+                   std::min(softness_m * kMaxChange, softness_per_radius_ * kMostRadius_m));
   }
   return true;
 }
@@ -313,14 +327,23 @@ bool ConeStrip::is_plausible(const Fit& fit) const {
 
 // The tip's shadow on the board; false when it is not certain enough, or cannot be the shadow of this cone.
 bool ConeStrip::place_shadow(const Fit& fit, const Frame& frame, const BoardView& view, ProbeShadow& shadow) const {
-  const StripModel::Normal covariance = fit.H.inverse();
+  StripModel::Normal covariance = fit.H.inverse();
   if (fit.x[kShadowDepth] < 2.5 * std::sqrt(covariance(kShadowDepth, kShadowDepth))) return false;
+  // A softness that was held is no better known for that.
+  const double softness_sigma = softness_per_radius_ * parameters_.lamp_radius_sigma_m;
+  const double surplus = prior_weight_[kSoftEnd] - 1.0 / (softness_sigma * softness_sigma);
+  if (surplus > 0.0) {
+    StripModel::Normal H = fit.H;
+    H(kSoftEnd, kSoftEnd) -= surplus;
+    covariance = H.inverse();
+  }
   Eigen::Matrix2d R;
   R.col(0) = frame.along;
   R.col(1) = frame.outward;
   shadow.p_BS = frame.origin + R * (fit.x.head<2>() + Vector2d(0.0, fit.x[kEdge]));
   shadow.covariance = R * covariance.topLeftCorner<2, 2>() * R.transpose();
-  shadow.covariance.diagonal().array() += kModelSigma_m * kModelSigma_m + board_.place_sigma_m * board_.place_sigma_m;
+  const double model_sigma = std::max(kModelSigma_m, kModelShare * fit.x[kSoftEnd]);
+  shadow.covariance.diagonal().array() += model_sigma * model_sigma + board_.place_sigma_m * board_.place_sigma_m;
   if (std::sqrt(shadow.covariance.trace()) > kMaxSigma_m) return false;
   const double distance = (shadow.p_BS - probe_.foot_B).norm();
   const double flat = (shadow.p_BS - probe_.p_BA.head<2>()).norm();
@@ -334,6 +357,8 @@ bool ConeStrip::place_shadow(const Fit& fit, const Frame& frame, const BoardView
   shadow.contrast = fit.x[kShadowDepth];
   shadow.support = 1.0;
   shadow.lines = 2;
+  shadow.lamp_radius_m = fit.x[kSoftEnd] / softness_per_radius_;
+  shadow.lamp_radius_sigma_m = std::sqrt(covariance(kSoftEnd, kSoftEnd)) / softness_per_radius_;
   return true;
 }
 
@@ -347,16 +372,26 @@ bool ConeStrip::fit_side(const LumaView& image, const BoardView& view, const std
   if (sample_count_ < kMinSamples) return false;
   const auto guess = first_guess(*frame);
   if (!guess) return false;
-  Fit fit;
-  fit.x = *guess;
-  if (!solve(fit, kOutlineOnly) || !guess_tip(fit.x)) return false;
-  if (!solve(fit, kCoarse) || !solve(fit, kFine)) return false;
-  const auto explained = gain_of(fit);
-  if (!explained || *explained < kMinGain) return false;
-  if (!is_plausible(fit) || !place_shadow(fit, *frame, view, shadow)) return false;
-  gain = *explained;
+  Fit start;
+  start.x = *guess;
+  if (!solve(start, kOutlineOnly) || !guess_tip(start.x)) return false;
+  // How soft it is, a weak strip cannot tell: then it is as soft as was expected.
+  const double weight = prior_weight_[kSoftEnd];
+  bool found = false;
+  for (const double held : {1.0, kHeld}) {
+    prior_weight_[kSoftEnd] = held * weight;
+    Fit fit = start;
+    if (!solve(fit, kCoarse) || !solve(fit, kFine)) continue;
+    const auto explained = gain_of(fit);
+    if (!explained || *explained < kMinGain) continue;
+    if (!is_plausible(fit) || !place_shadow(fit, *frame, view, shadow)) continue;
+    gain = *explained;
+    found = true;
+    break;
+  }
+  prior_weight_[kSoftEnd] = weight;
   shadow.line_seen = {side == 0, side == 1};
-  return true;
+  return found;
 }
 
 bool ConeStrip::find(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,

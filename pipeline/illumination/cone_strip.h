@@ -85,6 +85,8 @@ class ConeStrip {
   int index_;
   ShadowParameters parameters_;
   StripModel model_;
+  double softness_per_radius_;
+  Unknowns prior_weight_;
   std::array<StripSample, static_cast<std::size_t>(kPlaces) * kAcross> samples_{};
   int sample_count_ = 0;
 };

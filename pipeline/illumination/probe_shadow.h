@@ -11,6 +11,7 @@ namespace cgsr::illumination {
 /// What counts as a shadow of a probe: section [probes.shadow] of a robot's file (Alg. 5.1).
 struct ShadowParameters {
   double lamp_radius_m = 0.05;
+  double lamp_radius_sigma_m = 0.05;
   double min_contrast = 2.0;
   double min_contrast_ratio = 0.015;
   double min_support = 0.7;
@@ -20,7 +21,9 @@ struct ShadowParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("lamp_radius_m", self.lamp_radius_m, {0.0, 1.0}, "m",
-                 "The radius of a lamp, which determines how soft its shadows are.");
+                 "The radius of a lamp from which the estimate of each shadow's softness starts.");
+    visit.number("lamp_radius_sigma_m", self.lamp_radius_sigma_m, {1e-4, 1.0}, "m",
+                 "The standard deviation of that radius; a small value fixes it.");
     visit.number("min_contrast", self.min_contrast, {0.5, 100.0}, "grey levels",
                  "The smallest contrast between board and shadow.");
     visit.number("min_contrast_ratio", self.min_contrast_ratio, {0.0, 1.0}, "",
@@ -46,6 +49,9 @@ struct ProbeShadow {
   double contrast = 0.0;  ///< grey levels.
   double support = 0.0;   ///< share of places along the lines that show it.
   double rms = 0.0;       ///< grey levels that the model does not explain.
+  /// Of the lamp, as soft as the shadow's edges are; and its standard deviation.
+  double lamp_radius_m = 0.0;
+  double lamp_radius_sigma_m = 0.0;
 };
 
 }  // namespace cgsr::illumination

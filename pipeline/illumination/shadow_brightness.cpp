@@ -37,7 +37,7 @@ ShadowBrightness::ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& e
   slope_x_ = static_cast<float>(x[kSlopeX]);
   slope_y_ = static_cast<float>(x[kSlopeY]);
   blur_ = static_cast<float>(edges.blur_m);
-  penumbra_ = static_cast<float>(edges.penumbra_m);
+  penumbra_ = static_cast<float>(x[kSoftness]);
 }
 
 ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) const {
@@ -66,6 +66,7 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     Lane hidden = Lane::Constant(-1.0F);
     std::array<Lane, 2> J_tip;
     std::array<Lane, 2> J_foot;
+    Lane J_softness = Lane::Zero();
     for (std::size_t side = 0; side < 2; ++side) {
       const Line& line = line_[side];
       const Lane d = qx * line.inward_x + qy * line.inward_y + radius_;
@@ -79,6 +80,7 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
       const Lane J_d = -dark_ * density * over_sigma;
       J_tip[side] = J_d * way;
       J_foot[side] = J_d - J_tip[side];
+      J_softness -= J_d * d * soft * way * over_sigma * over_sigma;
     }
     const auto lit = hidden <= 0.0F;
     hidden = lit.select(0.0F, hidden);
@@ -92,6 +94,7 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     j[kFootY] = -J_foot[0] * line_[0].inward_y - J_foot[1] * line_[1].inward_y;
     j[kRadius] = J_foot[0] + J_foot[1];
     j[kDark] = -hidden;
+    j[kSoftness] = lit.select(0.0F, J_softness);
     j[kSlopeX] = x;
     j[kSlopeY] = y;
     const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * hidden);

@@ -10,7 +10,7 @@
 
 namespace cgsr::illumination {
 
-inline constexpr int kShadowUnknowns = 9;  ///< ShadowBrightness::Unknown
+inline constexpr int kShadowUnknowns = 10;  ///< ShadowBrightness::Unknown
 using ShadowUnknowns = Eigen::Matrix<double, kShadowUnknowns, 1>;
 using ShadowNormal = Eigen::Matrix<double, kShadowUnknowns, kShadowUnknowns>;
 
@@ -32,11 +32,10 @@ struct ShadowSamples {
   }
 };
 
-/// How soft the shadow's edges are.
+/// What is known of the shadow's edges.
 struct ShadowEdges {
   Eigen::Vector2d foot = Eigen::Vector2d::Zero();  ///< as measured: what the samples count from.
-  double blur_m = 0.0005;                          ///< of the image, on the board.
-  double penumbra_m = 0.0;  ///< where the tip's shadow falls; none at the base. Both are standard deviations.
+  double blur_m = 0.0005;                          ///< of the image, on the board: a standard deviation.
 };
 
 /// The normal equations of Gauss and Newton, robust weights counted.
@@ -47,13 +46,14 @@ struct ShadowSums {
   double weights = 0.0;
 };
 
-/// The brightness of the board about a probe, with the shadow that nine unknowns describe: both lines are tangents from the shadow of the tip
+/// The brightness of the board about a probe, with the shadow that ten unknowns describe: both lines are tangents from the shadow of the tip
 /// to the base, and the brightness between them is less by the contrast. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
 class ShadowBrightness {
  public:
   /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about
-  /// the measured foot. Metres on the board, grey levels.
-  enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLevel, kSlopeX, kSlopeY };
+  /// the measured foot; and the standard deviation of the penumbra where the tip's shadow falls, none at the base. Metres on the board, grey
+  /// levels.
+  enum Unknown : std::uint8_t { kTipX, kTipY, kFootX, kFootY, kRadius, kDark, kLevel, kSlopeX, kSlopeY, kSoftness };
 
   /// \param x  valid() is false where the shadow of the tip falls on the base.
   ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& edges, const SoftStep& step);

@@ -28,23 +28,23 @@ constexpr int kChoices = 5;              // of samples, at most
 constexpr int kMostAlong = 14;           // places along a line
 constexpr double kCorrelation = 1.6;     // samples read between pixels are not independent
 constexpr double kRadiusSigma_m = 0.0003;
-constexpr double kUnknown_m = 0.5;      // sigma of a tip of which nothing is known
-constexpr double kSlopeSigma = 100.0;   // grey levels per metre
-constexpr double kLongestStep = 0.35;   // of the shadow's length: no further than samples reach
+constexpr double kUnknown_m = 0.5;     // sigma of a tip of which nothing is known
+constexpr double kSlopeSigma = 100.0;  // grey levels per metre
+constexpr double kLongestStep = 0.35;  // of the shadow's length: no further than samples reach
+constexpr double kLeastRadius_m = 0.005;
+constexpr double kMostRadius_m = 0.4;
+constexpr double kMostChange = 2.0;     // a factor of the softness in one step
 constexpr double kLeastVariance = 0.3;  // grey levels squared
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 }  // namespace
 
 ShadowFit::ShadowFit(const Probe& probe, const Board& board, const ShadowParameters& parameters, double lamp_height_m)
-    : board_(board), probe_(probe), parameters_(parameters), lamp_height_m_(lamp_height_m) {
+    : board_(board),
+      probe_(probe),
+      parameters_(parameters),
+      softness_per_radius_(softness_per_radius(probe.p_BA.z(), lamp_height_m)) {
   edges_.foot = probe_.foot_B;
-  edges_.penumbra_m = penumbra_sigma(1.0);
-}
-
-double ShadowFit::penumbra_sigma(double along) const {
-  const double z = std::clamp(along, 0.0, 1.0) * probe_.p_BA.z();
-  return 0.5 * parameters_.lamp_radius_m * z / std::max(0.1, lamp_height_m_ - z);
 }
 
 // The part of a line that lies on the board, so that a long shadow's samples do not fall beside it.
@@ -85,7 +85,7 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
       const Vector2d across = d.J_point.leftCols<2>() * outline.inward[side];
       const double m_per_px = 1.0 / across.norm();
       edges_.blur_m = kBlur_px * m_per_px;
-      const double half = std::max(2.2 * m_per_px, 2.2 * penumbra_sigma(along)) + choice.slack_m;
+      const double half = std::max(2.2 * m_per_px, 2.2 * std::min(along, 1.0) * choice.softness_m) + choice.slack_m;
       const int before = samples_.count;
       for (int k = 0; k < samples_across && samples_.count < ShadowSamples::kMost; ++k) {
         const double t = half * (2.0 * k / (samples_across - 1) - 1.0);
@@ -127,6 +127,8 @@ void ShadowFit::add_known(const ShadowUnknowns& x, const ShadowStart& start, Sha
     add(kSlopeX + axis, kSlopeSigma * kSlopeSigma, 0.0);
   }
   add(kRadius, kRadiusSigma_m * kRadiusSigma_m, probe_.radius_m - x[kRadius]);
+  const double softness_sigma = softness_per_radius_ * parameters_.lamp_radius_sigma_m;
+  add(kSoftness, softness_sigma * softness_sigma, softness_per_radius_ * parameters_.lamp_radius_m - x[kSoftness]);
   sums.H(kDark, kDark) += 1e-6;
 }
 
@@ -141,6 +143,7 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
     settled = round + 1 == kChoices || (round > 0 && moved_m < kSettled_m);
     Choice choice;
     choice.tip_shadow = x.head<2>();
+    choice.softness_m = x[kSoftness];
     choice.slack_m = round == 0 ? std::min(0.004, 0.08 * (choice.tip_shadow - probe_.foot_B).norm()) : 0.001;
     choice.with_tip = with_tip;
     choice.sparse = !settled && !with_tip && start.contrast > kSparseContrast;
@@ -161,7 +164,10 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
       const double most = kLongestStep * (x.head<2>() - x.segment<2>(kFootX)).norm();
       const double move = change.head<2>().norm();
       if (move > most) change *= most / move;
+      const double softness_m = x[kSoftness];
       x += change;
+      x[kSoftness] = std::clamp(x[kSoftness], std::max(softness_m / kMostChange, softness_per_radius_ * kLeastRadius_m),
+                                std::min(softness_m * kMostChange, softness_per_radius_ * kMostRadius_m));
       if (x[kDark] < 1.0) return false;
     }
     moved_m = (x.head<2>() - choice.tip_shadow).norm();
@@ -220,8 +226,10 @@ bool ShadowFit::is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const {
 bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
                     const ShadowStart& start, ProbeShadow& shadow) {
   const bool with_tip = start.known_m > 0.0;
+  const double radius_m = start.lamp_radius_m > 0.0 ? start.lamp_radius_m : parameters_.lamp_radius_m;
   Fitted fitted;
-  fitted.x << start.tip_shadow, probe_.foot_B, probe_.radius_m, start.contrast, start.level, 0.0, 0.0;
+  fitted.x << start.tip_shadow, probe_.foot_B, probe_.radius_m, start.contrast, start.level, 0.0, 0.0,
+      softness_per_radius_ * std::clamp(radius_m, kLeastRadius_m, kMostRadius_m);
   if (!settle(image, view, behind, start, fitted) || !may_be_shadow(fitted.x)) return false;
   const ShadowUnknowns& x = fitted.x;
   const ShadowNormal covariance = fitted.information.inverse();
@@ -233,6 +241,8 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
   shadow.covariance = covariance.topLeftCorner<2, 2>();
+  shadow.lamp_radius_m = x[kSoftness] / softness_per_radius_;
+  shadow.lamp_radius_sigma_m = std::sqrt(covariance(kSoftness, kSoftness)) / softness_per_radius_;
   shadow.J_pose = -d.J_point.leftCols<2>().inverse() * view.pose_jacobian(d, p_BS);
   if (!with_tip) return is_shown(x, shadow);
   shadow.lines = 2;

@@ -18,12 +18,13 @@ struct ShadowStart {
   Eigen::Vector2d tip_shadow = Eigen::Vector2d::Zero();  ///< on the board.
   double contrast = 0.0;                                 ///< grey levels.
   double level = 0.0;                                    ///< of the board at the foot.
+  double lamp_radius_m = 0.0;                            ///< 0: what the parameters say.
   double known_m = 0.0;  ///< how well the tip is known beforehand; 0: not, and the tip itself is not looked at.
 };
 
 /// Fits the shadow of a probe to the brightness along both of its lines: the shadow of the tip, the foot and radius of the base within what
-/// calibration leaves open, the shadow's contrast and the board's brightness, a plane. Edges are as soft as a lamp of the given radius makes
-/// them. No edge image is needed, all of a line counts, and a line that is half hidden is completed.
+/// calibration leaves open, the shadow's contrast, how soft its edges are and the board's brightness, a plane. The softness tells the lamp's
+/// radius; beforehand it is known to the parameters' standard deviation. No edge image is needed, all of a line counts, and a line that is half hidden is completed.
 /// Ours; the dissertation finds the lines by Canny and Hough (Alg. 5.1).
 ///
 /// Nothing is allocated.
@@ -42,6 +43,7 @@ class ShadowFit {
 
   struct Choice {
     Eigen::Vector2d tip_shadow;
+    double softness_m;
     double slack_m;  // beyond the soft edge
     bool with_tip;
     bool sparse;
@@ -62,12 +64,11 @@ class ShadowFit {
   [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x) const;
   [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
-  [[nodiscard]] double penumbra_sigma(double along) const;
 
   Board board_;
   Probe probe_;
   ShadowParameters parameters_;
-  double lamp_height_m_;
+  double softness_per_radius_;
   SoftStep step_;
   ShadowSamples samples_;
   std::array<std::size_t, kMostPlaces> side_of_{};  // which line a place lies along

@@ -345,6 +345,7 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   again.tip_shadow = shadow.p_BS;
   again.contrast = shadow.contrast;
   again.level = plane_[0];
+  again.lamp_radius_m = shadow.lamp_radius_m;
   again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
   if (!fit_.fit(image, view, behind_, again, with_tip) || !is_explained(with_tip)) return;

@@ -50,4 +50,10 @@ class SoftStep {
   std::array<float, kEntries> table_{};
 };
 
+/// How wide the penumbra of a tip's shadow is on the board, as a standard deviation [m], per metre of the lamp's radius.
+/// \param height_m  of the tip. \param lamp_height_m  likewise above the board.
+inline double softness_per_radius(double height_m, double lamp_height_m) {
+  return 0.5 * height_m / std::max(0.1, lamp_height_m - height_m);
+}
+
 }  // namespace cgsr::illumination

@@ -13,10 +13,7 @@ constexpr auto kEnd_m = static_cast<float>(StripModel::kPlaces * StripModel::kSt
 
 }  // namespace
 
-StripModel::StripModel(const Probe& probe, const ShadowParameters& parameters, double lamp_height_m)
-    : radius_m_(probe.radius_m),
-      soft_end_m_(static_cast<float>(0.5 * parameters.lamp_radius_m * probe.p_BA.z() /
-                                     std::max(0.1, lamp_height_m - probe.p_BA.z()))) {}
+StripModel::StripModel(const Probe& probe) : radius_m_(probe.radius_m) {}
 
 Outline StripModel::shadow_outline(const Vector2d& tip) const {
   return outline_of(Vector2d(0.0, -radius_m_), radius_m_, tip);
@@ -36,6 +33,7 @@ float StripModel::hidden(const Unknowns& x, const StripSample& sample, const Out
                          float over_length) const {
   const auto edge = static_cast<float>(x[kEdge]);
   const Eigen::Vector2f from_foot(sample.at.x(), sample.at.y() - edge + static_cast<float>(radius_m_));
+  const auto soft_end = static_cast<float>(x[kSoftEnd]);
   float share = -1.0F;
   for (std::size_t side = 0; side < 2; ++side) {
     const Eigen::Vector2f inward = outline.inward[side].cast<float>();
@@ -43,7 +41,7 @@ float StripModel::hidden(const Unknowns& x, const StripSample& sample, const Out
     const Eigen::Vector2f along =
         side == 0 ? Eigen::Vector2f(-inward.y(), inward.x()) : Eigen::Vector2f(inward.y(), -inward.x());
     const float way = std::clamp(std::abs(from_foot.dot(along)) * over_length, 0.0F, 1.0F);
-    const float soft = soft_end_m_ * way;
+    const float soft = soft_end * way;
     share += step_.at(d / std::sqrt(soft * soft + blur_m_ * blur_m_)).share;
   }
   return std::max(0.0F, share);
@@ -55,6 +53,7 @@ StripModel::Wedge StripModel::wedge_at(const Unknowns& x) const {
   Wedge wedge;
   wedge.valid = outline.valid;
   wedge.dark = static_cast<float>(x[kShadowDepth]);
+  wedge.soft_end = static_cast<float>(x[kSoftEnd]);
   for (std::size_t side = 0; side < 2 && wedge.valid; ++side) {
     const Vector2d to_tip = tip - outline.touch[side];
     const double length = to_tip.norm();
@@ -79,7 +78,7 @@ inline StripModel::SampleLanes StripModel::lanes_at(std::span<const StripSample>
   return lanes;
 }
 
-// How dark the shadow is at four samples, and its derivatives with respect to the tip.
+// How dark the shadow is at four samples, and its derivatives with respect to the tip and the softness.
 inline StripModel::WedgeLanes StripModel::darken(const Wedge& wedge, const Lane& along, const Lane& q) const {
   const auto radius = static_cast<float>(radius_m_);
   WedgeLanes lanes;
@@ -88,19 +87,21 @@ inline StripModel::WedgeLanes StripModel::darken(const Wedge& wedge, const Lane&
     const Lane d = along * wedge.inward[side].x() + q * wedge.inward[side].y() + radius;
     const Lane way =
         ((along * wedge.line[side].x() + q * wedge.line[side].y()) * wedge.over_length[side]).max(0.0F).min(1.0F);
-    const Lane soft = soft_end_m_ * way;
+    const Lane soft = wedge.soft_end * way;
     const Lane over_sigma = 1.0F / (soft * soft + blur_m_ * blur_m_).sqrt();
     Lane share;
     Lane density;
     step_.at(d * over_sigma, share, density);
     lanes.dark_share += share;
     const Lane J_tip = wedge.dark * density * over_sigma * way;
+    lanes.J_soft_end += J_tip * d * soft * over_sigma * over_sigma;
     lanes.J_tip_x += J_tip * wedge.inward[side].x();
     lanes.J_tip_y += J_tip * wedge.inward[side].y();
   }
   const auto lit = lanes.dark_share <= 0.0F;
   lanes.J_tip_x = lit.select(0.0F, lanes.J_tip_x);
   lanes.J_tip_y = lit.select(0.0F, lanes.J_tip_y);
+  lanes.J_soft_end = lit.select(0.0F, lanes.J_soft_end);
   lanes.dark_share = lanes.dark_share.max(0.0F);
   return lanes;
 }
@@ -115,6 +116,7 @@ inline void StripModel::linearize(const Floats& f, const SampleLanes& at, const 
   const Lane cone = f[kCone] + f[kConeSlope] * at.along;
   j[kTipAlong] = w * shadow.J_tip_x;
   j[kTipOut] = w * shadow.J_tip_y;
+  j[kSoftEnd] = w * shadow.J_soft_end;
   j[kShadowDepth] = -w * shadow.dark_share;
   j[kBoardLevel] = w;
   j[kSlopeAlong] = w * at.along;

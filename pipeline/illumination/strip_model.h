@@ -32,6 +32,7 @@ enum StripUnknown : std::uint8_t {
   kConeSlope,    ///< its rise along the outline.
   kEdge,         ///< the outline's place against the registered one.
   kEdgeSlope,    ///< what is added to that at the outline's far end.
+  kSoftEnd,      ///< the standard deviation of the penumbra at the tip [m].
 };
 
 /// The brightness beside the outline of a cone: it goes from the cone's to the board's across a soft edge, and the board is darker by the shadow
@@ -43,11 +44,11 @@ class StripModel {
  public:
   static constexpr int kPlaces = 36;
   static constexpr double kStep_m = 0.0025;  ///< between places along the outline.
-  static constexpr int kUnknowns = 10;
+  static constexpr int kUnknowns = 11;
   using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
   using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 
-  StripModel(const Probe& probe, const ShadowParameters& parameters, double lamp_height_m);
+  explicit StripModel(const Probe& probe);
 
   /// \param blur_m  of the lens, the pixel and the reading between pixels, on the board.
   void set_blur(float blur_m) { blur_m_ = blur_m; }
@@ -90,12 +91,14 @@ class StripModel {
     std::array<Eigen::Vector2f, 2> line;
     std::array<float, 2> over_length{};
     float dark = 0.0F;
+    float soft_end = 0.0F;
     bool valid = false;
   };
   struct WedgeLanes {
     Lane dark_share = Lane::Zero();
     Lane J_tip_x = Lane::Zero();
     Lane J_tip_y = Lane::Zero();
+    Lane J_soft_end = Lane::Zero();
   };
   struct SampleLanes {
     Lane along;
@@ -112,7 +115,6 @@ class StripModel {
   void linearize(const Floats& f, const SampleLanes& at, const WedgeLanes& shadow, Row& j) const;
 
   double radius_m_;
-  float soft_end_m_;  // the standard deviation of the penumbra at the tip
   SoftStep step_;
   float blur_m_ = 0.001F;
 };

@@ -19,12 +19,12 @@ geometry::Pose real_camera(const Board& board) {
   return geometry::moved(board.X_BC, step);
 }
 
-// A lamp of 5 cm radius, in parts: its shadow is soft.
-void shine_from_ball(const Vector3d& p_BL, double shadow_level, Drawing& drawing) {
-  constexpr int kParts = 9;
-  drawing.shadow_level = shadow_level / kParts;
-  for (int i = 0; i < kParts; ++i) {
-    const double radius = 0.05 * std::sqrt((i + 0.5) / kParts);
+// A lamp in parts: its shadow is soft.
+void shine_from_ball(const Vector3d& p_BL, double shadow_level, Drawing& drawing, double radius_m = 0.05,
+                     int parts = 9) {
+  drawing.shadow_level = shadow_level / parts;
+  for (int i = 0; i < parts; ++i) {
+    const double radius = radius_m * std::sqrt((i + 0.5) / parts);
     const double angle = 2.4 * i;
     drawing.lamps_B.emplace_back(p_BL + radius * Vector3d(std::cos(angle), std::sin(angle), 0.0));
   }
@@ -56,6 +56,43 @@ TEST(ProbeObservation, FindsTheShadowsOfDrawnTips) {
     ASSERT_EQ(lamps.count, 1) << angle;
     EXPECT_LT((lamps.lamp[0].p_RL - board.X_RB * drawing.lamps_B[0]).norm(), 0.07) << angle;
   }
+}
+
+// How large the lamp is nobody tells: the softness of its shadow does.
+TEST(ProbeObservation, FindsHowLargeALampIs) {
+  const Board board = shipped_board();
+  const auto X_BC = real_camera(board);
+  constexpr int kParts = 21;
+  ProbesParameters fixed = shipped_probes();
+  fixed.shadow.lamp_radius_sigma_m = 1e-4;
+  double fixed_off = 0.0;
+  for (const double radius : {0.02, 0.10, 0.15}) {
+    const Vector3d p_BL = lamp_at(40.0, 285.0);
+    Drawing drawing;
+    shine_from_ball(p_BL, 30.0, drawing, radius, kParts);
+    const auto image = draw(board, X_BC, drawing);
+    ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+    const auto seen = observer.observe(image.view());
+    int whole = 0;
+    for (const auto& found : seen.probe) {
+      for (int k = 0; k < found.count; ++k) {
+        const ProbeShadow& shadow = found.shadow[static_cast<std::size_t>(k)];
+        if (shadow.lines < 2) continue;
+        ++whole;
+        EXPECT_NEAR(shadow.lamp_radius_m, radius, std::max(0.01, 0.25 * radius));
+        EXPECT_LT(shadow.lamp_radius_sigma_m, 0.02) << radius;
+      }
+    }
+    EXPECT_GE(whole, 1) << radius;
+    const auto lamps = locate_lamps(board, {}, seen);
+    ASSERT_EQ(lamps.count, 1) << radius;
+    EXPECT_LT((lamps.lamp[0].p_RL - board.X_RB * p_BL).norm(), 0.07) << radius;
+
+    ProbeObserver told_wrongly(board, fixed, kLampHeight_m);
+    const auto wrong = locate_lamps(board, {}, told_wrongly.observe(image.view()));
+    fixed_off = wrong.count == 0 ? 1.0 : (wrong.lamp[0].p_RL - board.X_RB * p_BL).norm();
+  }
+  EXPECT_GT(fixed_off, 0.07);  // 15 cm taken for 5
 }
 
 // Light from behind the camera: of a tip's shadow a pixel or two stand out beside the cone.
