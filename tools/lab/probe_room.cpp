@@ -48,6 +48,8 @@ Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const ProbeRoomLight& light) 
   spec->lamp[0].lumens = light.lumens;
   spec->lamp[0].on = light.on;
   spec->lamp[0].switch_name.clear();
+  if (light.p_WL) spec->lamp[0].position_m = triple(*light.p_WL);
+  for (double& lux : spec->ambient.illuminance_lux) lux *= light.ambient;
   if (light.second_p_WL) {
     spec->lamp.push_back(spec->lamp[0]);
     spec->lamp[1].name = "second lamp";

@@ -23,7 +23,9 @@ struct ProbeRoomLight {
   double radius_m = 0.05;
   double lumens = 600.0;
   bool on = true;
+  std::optional<Eigen::Vector3d> p_WL;         ///< where the lamp hangs; nothing: where the world says.
   std::optional<Eigen::Vector3d> second_p_WL;  ///< a second lamp of the same kind.
+  double ambient = 1.0;                        ///< of the world's ambient light.
 };
 
 /// The living room of config/worlds/home.toml with the lamp robot, its probe board and a ball-shaped lamp: chapter 5's shadows with their truth.
