@@ -4,6 +4,7 @@
 #include "tools/lab/localization/trial.h"
 #include "tools/lab/shade_trial.h"
 #include "tools/lab/source_path.h"
+#include "tools/lab/tables/people_tables.h"
 
 namespace cgsr::lab {
 namespace {
@@ -114,6 +115,10 @@ Result<std::string> home_robot_hash(const Setting& setting) {
 
 Result<std::string> people_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-people");
+}
+
+Result<std::string> people_line_robot_hash(const Setting& setting) {
+  return robot_hash(setting, "sim-people-line");
 }
 
 Result<std::string> round_robot_hash(const Setting& setting) {

@@ -11,7 +11,8 @@ namespace cgsr::lab {
 namespace {
 
 Cost cost_of(const nlohmann::json& figures) {
-  return {figures.at("mean_minstr").get<double>(), figures.at("worst_minstr").get<double>()};
+  return {figures.at("mean_minstr").get<double>(), figures.at("worst_minstr").get<double>(),
+          figures.value("images", 0)};
 }
 
 }  // namespace

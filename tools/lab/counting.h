@@ -12,6 +12,7 @@ namespace cgsr::lab {
 struct Cost {
   double mean_minstr = 0.0;
   double worst_minstr = 0.0;
+  int images = 0;  ///< in which it ran; 0 where that was not counted.
 };
 
 /// What tools/count says about a command.

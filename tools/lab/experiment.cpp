@@ -7,6 +7,7 @@
 #include "tools/lab/source_path.h"
 #include "tools/lab/sources.h"
 #include "tools/lab/tables/faces_caltech.h"
+#include "tools/lab/tables/people_tables.h"
 #include "tools/lab/tables/requirements.h"
 
 namespace cgsr::lab {
@@ -242,6 +243,16 @@ constexpr std::array kExperiments{
                faces_hash,
                kPersonRooms,
                {"tools/lab/tables/faces_caltech.cpp"}},
+    Experiment{"figure-6.7",
+               "What identifying people costs: face in every image, in every other one, face and shirt (6.4)",
+               6,
+               1,
+               true,
+               true,
+               figure_6_7,
+               people_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/figure_6_7.cpp", "tools/lab/person_cast.cpp", "config/worlds/people.toml"}},
     Experiment{"figure-6.8",
                "Face and shirt while a person turns, walks, leaves and comes back (6.3)",
                6,
@@ -252,6 +263,16 @@ constexpr std::array kExperiments{
                people_robot_hash,
                kWholeRobot,
                {"tools/lab/tables/figure_6_8.cpp", "tools/lab/person_cast.cpp", "config/worlds/people.toml"}},
+    Experiment{"who-is-who",
+               "Who Is Who in a line: four known people and a stranger (6.4.1.2)",
+               6,
+               10,
+               true,
+               true,
+               who_is_who,
+               people_line_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/who_is_who.cpp", "tools/lab/person_cast.cpp", "config/worlds/people.toml"}},
 };
 
 void add_requirements(const Experiment& experiment, Report& report) {

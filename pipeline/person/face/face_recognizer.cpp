@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
+#include "platform/count_apart.h"
 
 namespace cgsr::person {
 
@@ -20,6 +21,7 @@ bool SteppedRecognizer::ask(FaceQuestion&& question) {
 
 std::optional<FaceAnswer> SteppedRecognizer::answer() {
   if (!question_ || --images_left_ > 0) return std::nullopt;
+  const CountApart apart("identify", "recognition");  // on a robot the thread of that name does it
   const FaceAnswer answer = recognize(*question_, gallery_);
   question_.reset();
   return answer;

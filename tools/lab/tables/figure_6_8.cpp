@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "hal/sim/people/person.h"
+#include "tools/lab/csv_row.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/person_cast.h"
 #include "tools/lab/scenes/random.h"
@@ -75,40 +76,28 @@ struct Seen {
   double time_s = 0.0;
   int number = -1;  // -1: nobody
   bool by_face = false;
+  bool a_face = false;  // some face is in view, named or not
+  bool unsure = false;  // a face is in view, nobody is identified
 };
-
-/// A comma within quotes belongs to its cell.
-std::vector<std::string> cells_of(const std::string& row) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : row) {
-    if (c == '"') quoted = !quoted;
-    if (c == ',' && !quoted) {
-      cells.emplace_back();
-    } else if (c != '"') {
-      cells.back() += c;
-    }
-  }
-  return cells;
-}
 
 Result<std::vector<Seen>> read_csv(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
   std::getline(in, line);
-  const auto names = cells_of(line);
+  const auto names = csv_cells(line);
   const auto column = [&names](const char* name) {
     return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
   };
-  const std::size_t time = column("stamp_s"), number = column("person_number"), by = column("person_by");
-  if (std::max({time, number, by}) >= names.size())
-    return fail(fmt::format("{}: has no column person_number", file.string()));
+  const std::size_t time = column("stamp_s"), number = column("person_number"), by = column("person_by"),
+                    faces = column("faces"), state = column("person");
+  const std::size_t last = std::max({time, number, by, faces, state});
+  if (last >= names.size()) return fail(fmt::format("{}: has no column person_number or faces", file.string()));
   std::vector<Seen> seen;
   while (std::getline(in, line)) {
-    const auto cells = cells_of(line);
-    if (cells.size() <= by) return fail(fmt::format("{}: a row has {} columns", file.string(), cells.size()));
-    seen.push_back(
-        {std::stod(cells[time]), cells[number].empty() ? -1 : std::stoi(cells[number]), cells[by] == "face"});
+    const auto cells = csv_cells(line);
+    if (cells.size() <= last) return fail(fmt::format("{}: a row has {} columns", file.string(), cells.size()));
+    seen.push_back({std::stod(cells[time]), cells[number].empty() ? -1 : std::stoi(cells[number]), cells[by] == "face",
+                    !cells[faces].empty() && cells[faces] != "0", cells[state] == "unsure"});
   }
   return seen;
 }
@@ -130,12 +119,12 @@ Result<std::vector<Seen>> look_on(const TableFolder& folder, const std::string& 
 
 /// Counts of one variant of one cast.
 struct Counts {
-  int visible = 0, identified = 0;            // the person is there
-  int after_first = 0, identified_after = 0;  // the same from the first identification on
-  int absent = 0, claimed = 0;                // he is not
+  int visible = 0, identified = 0, unsure = 0;  // the person is there
+  int after_first = 0, identified_after = 0;    // the same from the first identification on
+  int absent = 0, claimed = 0;                  // he is not
   int back_turned = 0, identified_back_turned = 0;
   int somebody_else = 0, images = 0;
-  double first_s = -1.0;
+  double first_s = -1.0, first_face_s = -1.0;
 };
 
 bool near_a_change(double time_s) {
@@ -152,6 +141,7 @@ Counts count(const std::vector<Seen>& seen) {
     ++counts.images;
     if (image.number > 1) ++counts.somebody_else;
     if (is_it && counts.first_s < 0.0) counts.first_s = image.time_s;
+    if (image.a_face && counts.first_face_s < 0.0) counts.first_face_s = image.time_s;
     if (near_a_change(image.time_s)) continue;
     if (image.time_s > kGone_s && image.time_s < kBack_s) {
       ++counts.absent;
@@ -160,6 +150,7 @@ Counts count(const std::vector<Seen>& seen) {
     }
     ++counts.visible;
     counts.identified += is_it ? 1 : 0;
+    counts.unsure += image.unsure ? 1 : 0;
     if (counts.first_s >= 0.0) {
       ++counts.after_first;
       counts.identified_after += is_it ? 1 : 0;
@@ -185,13 +176,20 @@ void add_rows(Report& report, const std::string& name, const std::vector<Counts>
     report.rows.push_back(mean_row(name, quantity, "", shares, seed));
   };
   add("identified where visible", &Counts::identified, &Counts::visible);
+  add("unsure where visible", &Counts::unsure, &Counts::visible);
   add("identified where visible, from the first time on", &Counts::identified_after, &Counts::after_first);
   add("identified where the face is turned away", &Counts::identified_back_turned, &Counts::back_turned);
   add("somebody identified where nobody is", &Counts::claimed, &Counts::absent);
   add("taken for somebody else", &Counts::somebody_else, &Counts::images);
-  std::vector<double> first;
+  std::vector<double> first, face;
   for (const Counts& counts : casts) {
     if (counts.first_s >= 0.0) first.push_back(counts.first_s);
+    if (counts.first_face_s >= 0.0) face.push_back(counts.first_face_s);
+  }
+  if (!face.empty()) {
+    report.rows.push_back(mean_row(name, "face first noticed after", "s", face, seed));
+    report.rows.push_back(plain_row(name, "face first noticed after, worst", "s", *std::ranges::max_element(face),
+                                    face.size(), Join::kMax));
   }
   if (!first.empty()) report.rows.push_back(mean_row(name, "first identified after", "s", first, seed));
   report.rows.push_back(share_row(name, "casts in which the person was identified", static_cast<int>(first.size()),

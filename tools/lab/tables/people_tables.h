@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "tools/lab/experiment.h"
+
+namespace cgsr::lab {
+
+/// What identifying people costs (Fig. 6.7): instructions per image on the frame path, the recogniser's apart.
+Result<Report> figure_6_7(const Setting& setting);
+
+/// Who Is Who in a line (6.4.1.2): four people who are enrolled and a stranger.
+Result<Report> who_is_who(const Setting& setting);
+
+/// All of sim-people-line, hashed.
+Result<std::string> people_line_robot_hash(const Setting& setting);
+
+}  // namespace cgsr::lab
