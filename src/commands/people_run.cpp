@@ -90,9 +90,9 @@ std::string person_name(const person::Identities& identities, Label number) {
 /// The gallery alone is not enough where few are enrolled: nobody tells it how alike faces are in this light, from this camera.
 std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, double among,
                                     const person::FaceGallery& gallery) {
-  constexpr double kMuchFarther =
-      1.5;  // photographs of one person: 0.7 to 1.4; of two: from 1.4 on, the nearest of all others
-  constexpr double kAlike = 0.04;  // nearer than this are only images of one sitting
+  constexpr double kMuchFarther = 1.5;  // photographs of one person: .6 to 1.4; generated faces of two: from 1.55 on
+  constexpr double kAlike = 0.03;       // nearer than this are only images of one sitting,
+  constexpr double kUnlike = 0.035;     // and farther only images of which some are bad
   struct Named {
     std::size_t faces = 0;
     double distance = 0.0;  // sum
@@ -108,7 +108,7 @@ std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, do
   const auto most = std::ranges::max_element(named, fewer);
   if (most == named.end() || 2 * most->second.faces <= faces.size()) return std::nullopt;
   const double away = most->second.distance / static_cast<double>(most->second.faces);
-  if (away > kMuchFarther * std::max(among, kAlike)) return std::nullopt;
+  if (away > kMuchFarther * std::clamp(among, kAlike, kUnlike)) return std::nullopt;
   return most->first;
 }
 

@@ -74,6 +74,20 @@ TEST(FaceGallery, CallsAnUnknownFaceAStrangerAndNotTheNearest) {
   }
 }
 
+// The geometric check: each half of the torn face is as near to its place as the whole one is that was moved, but no shift, turn or scale explains both.
+TEST(FaceGallery, IsNearerToAFaceThatMovedAsAWholeThanToOneThatIsTorn) {
+  FaceGallery gallery;
+  for (int view = 0; view < 2; ++view) gallery.enroll(1, view_of(described(portrait(1))));
+  for (const int off_px : {6, 8}) {
+    const cv::Mat down = portrait(1, 1.0, {0, off_px}), up = portrait(1, 1.0, {0, -off_px});
+    cv::Mat torn = down.clone();
+    const cv::Rect right(kWidth / 2, 0, kWidth / 2, kHeight);
+    up(right).copyTo(torn(right));
+    const double whole = gallery.identify(described(down)).distance;
+    EXPECT_GT(gallery.identify(described(torn)).distance, whole + 0.01) << off_px << " px";
+  }
+}
+
 TEST(FaceGallery, LeavesOutWhoHasASingleView) {
   auto gallery = gallery_of(3, 1);
   EXPECT_EQ(gallery.identify(described(portrait(0))).label, std::nullopt);

@@ -1,5 +1,7 @@
 #include "pipeline/person/face/face_descriptor.h"
 
+#include <emmintrin.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -103,9 +105,95 @@ void describe_point(const std::array<cv::Mat, kDirections>& planes, int x_px, in
 }
 
 int dot(const std::uint8_t* a, const std::uint8_t* b) {
-  int sum = 0;
-  for (int i = 0; i < kSiftSize; ++i) sum += a[i] * b[i];
-  return sum;
+  const __m128i zero = _mm_setzero_si128();
+  __m128i sum = zero;
+  for (int i = 0; i < kSiftSize; i += 16) {
+    const __m128i x = _mm_loadu_si128(reinterpret_cast<const __m128i*>(a + i));
+    const __m128i y = _mm_loadu_si128(reinterpret_cast<const __m128i*>(b + i));
+    sum = _mm_add_epi32(sum, _mm_madd_epi16(_mm_unpacklo_epi8(x, zero), _mm_unpacklo_epi8(y, zero)));
+    sum = _mm_add_epi32(sum, _mm_madd_epi16(_mm_unpackhi_epi8(x, zero), _mm_unpackhi_epi8(y, zero)));
+  }
+  sum = _mm_add_epi32(sum, _mm_srli_si128(sum, 8));
+  return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_srli_si128(sum, 4)));
+}
+
+constexpr std::size_t kSteps = 2 * kReach + 1;
+/// How alike a view's point is to each dense point around its place, row by row: scalar products.
+using Likenesses = std::array<int, kSteps * kSteps>;
+
+/// From a point's place in the view to where it lies in the face, in steps of the dense grid.
+struct Offset {
+  double x = 0.0, y = 0.0;
+};
+
+/// Place of a view's point from the middle of the face, in steps.
+Offset place_of(int point) {
+  const int column = point % kViewSide, row = point / kViewSide;
+  return {double(kSpacing) * (column - kViewSide / 2), double(kSpacing) * (row - kViewSide / 2)};
+}
+
+/// How a face was moved, turned and scaled against a view: offset = (a x - b y + dx, b x + a y + dy).
+struct Similarity {
+  double a = 0.0, b = 0.0, dx = 0.0, dy = 0.0;
+  [[nodiscard]] Offset at(int point) const {
+    const auto [x, y] = place_of(point);
+    return {a * x - b * y + dx, b * x + a * y + dy};
+  }
+};
+
+/// Fills in how alike a view's point is to the dense points around it. \return where it is most alike.
+Offset likenesses(const FaceDescriptor& face, const FaceView& view, int point, Likenesses& alike) {
+  const std::uint8_t* enrolled = view.data() + std::ptrdiff_t{point} * kSiftSize;
+  for (std::size_t y = 0; y < kSteps; ++y) {
+    const int row = (point / kViewSide * kSpacing + static_cast<int>(y)) * kDenseSide + point % kViewSide * kSpacing;
+    const std::uint8_t* seen = face.dense.data() + std::ptrdiff_t{row} * kSiftSize;
+    for (std::size_t x = 0; x < kSteps; ++x, seen += kSiftSize) alike[y * kSteps + x] = dot(enrolled, seen);
+  }
+  const auto most = std::max_element(alike.begin(), alike.end()) - alike.begin();
+  return {double(most % std::ptrdiff_t{kSteps}) - kReach, double(most / std::ptrdiff_t{kSteps}) - kReach};
+}
+
+/// The similarity that most points agree with: least squares, again with weights that fall with the distance (Geman and McClure, 1987).
+Similarity fit(const std::array<Offset, kViewSide * kViewSide>& offsets) {
+  constexpr int kRounds = 5;
+  std::array<double, kViewSide * kViewSide> weights{};
+  weights.fill(1.0);
+  Similarity moved;
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0, x = 0.0, y = 0.0, u = 0.0, v = 0.0, square = 0.0, along = 0.0, across = 0.0;
+    for (int i = 0; i < kViewSide * kViewSide; ++i) {
+      const double w = weights[static_cast<std::size_t>(i)];
+      const Offset place = place_of(i), off = offsets[static_cast<std::size_t>(i)];
+      sum += w;
+      x += w * place.x;
+      y += w * place.y;
+      u += w * off.x;
+      v += w * off.y;
+      square += w * (place.x * place.x + place.y * place.y);
+      along += w * (place.x * off.x + place.y * off.y);
+      across += w * (place.x * off.y - place.y * off.x);
+    }
+    const double spread = square - (x * x + y * y) / sum;
+    moved.a = (along - (x * u + y * v) / sum) / spread;
+    moved.b = (across - (x * v - y * u) / sum) / spread;
+    moved.dx = (u - moved.a * x + moved.b * y) / sum;
+    moved.dy = (v - moved.b * x - moved.a * y) / sum;
+    for (int i = 0; i < kViewSide * kViewSide; ++i) {
+      const Offset expected = moved.at(i), off = offsets[static_cast<std::size_t>(i)];
+      const double away2 = (expected.x - off.x) * (expected.x - off.x) + (expected.y - off.y) * (expected.y - off.y);
+      weights[static_cast<std::size_t>(i)] = 1.0 / ((1.0 + away2) * (1.0 + away2));
+    }
+  }
+  return moved;
+}
+
+std::array<double, kSteps> squares_from(double place) {
+  std::array<double, kSteps> squares{};
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const double off = static_cast<double>(i) - kReach - place;
+    squares[i] = off * off;
+  }
+  return squares;
 }
 
 }  // namespace
@@ -148,15 +236,22 @@ FaceView view_of(const FaceDescriptor& face) {
 void view_distances(const FaceDescriptor& face, const FaceView& view,
                     std::array<double, kViewSide * kViewSide>& distances) {
   constexpr double kUnit = 255.0 * 255.0;
+  constexpr double kPerStep2 = 0.004;  // by which a point counts as farther for each squared step off its place
+  std::array<Likenesses, kViewSide * kViewSide> alike;
+  std::array<Offset, kViewSide * kViewSide> nearest{};
+  for (int i = 0; i < kViewSide * kViewSide; ++i)
+    nearest[static_cast<std::size_t>(i)] = likenesses(face, view, i, alike[static_cast<std::size_t>(i)]);
+  const Similarity moved = fit(nearest);
   for (int i = 0; i < kViewSide * kViewSide; ++i) {
-    const std::uint8_t* enrolled = view.data() + std::ptrdiff_t{i} * kSiftSize;
-    int nearest = 0;
-    for (int y = 0; y <= 2 * kReach; ++y) {
-      const int row = (i / kViewSide * kSpacing + y) * kDenseSide + i % kViewSide * kSpacing;
-      for (int x = 0; x <= 2 * kReach; ++x)
-        nearest = std::max(nearest, dot(enrolled, face.dense.data() + std::ptrdiff_t{row + x} * kSiftSize));
+    const Offset place = moved.at(i);
+    const std::array<double, kSteps> off_x2 = squares_from(place.x), off_y2 = squares_from(place.y);
+    const Likenesses& point = alike[static_cast<std::size_t>(i)];
+    double most = -1.0;
+    for (std::size_t y = 0; y < kSteps; ++y) {
+      for (std::size_t x = 0; x < kSteps; ++x)
+        most = std::max(most, point[y * kSteps + x] / kUnit - kPerStep2 * (off_x2[x] + off_y2[y]));
     }
-    distances[static_cast<std::size_t>(i)] = 1.0 - nearest / kUnit;
+    distances[static_cast<std::size_t>(i)] = 1.0 - most;
   }
 }
 

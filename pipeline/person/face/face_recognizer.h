@@ -20,7 +20,7 @@ struct FaceAnswer {
   FaceMatch match;
 };
 
-/// Describes the face and compares it with everybody's (6.2.1). Cost: 8 million instructions and 0.4 for each view in the gallery.
+/// Describes the face and compares it with everybody's (6.2.1). Cost: 37 million instructions and half a million for each view in the gallery.
 FaceAnswer recognize(const FaceQuestion& question, const FaceGallery& gallery);
 
 /// Where the frame path has faces named: beside it, because describing a face costs a third of an image's time. Whoever asks goes on and looks
