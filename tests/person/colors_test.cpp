@@ -101,6 +101,24 @@ TEST(PersonColors, MapEachColorToItsPersonAndTheBackgroundToNobody) {
   EXPECT_EQ(label_of(map, kGrey), 0);
 }
 
+// Most codes are passed over by one look; the map is still that of every code's own share.
+TEST(PersonColors, MapEveryCodeByItsShareHoweverFewAreLookedAt) {
+  PersonColors colors;
+  colors.learn(3, around(kRed, 1), {});
+  imaging::LabelTable map;
+  for (const color::Light& light : {*colors.learned_light(3), color::Light{0.9, 0.9, 0.9}}) {
+    colors.make_map(std::span(&light, 1), map);
+    int labelled = 0;
+    for (int code = 0; code < imaging::kColorCodes; ++code) {
+      const double share = colors.share(3, imaging::rgb_of_code(static_cast<std::uint16_t>(code)), light);
+      const bool is_shirt = share >= PersonColorParameters{}.min_share;
+      ASSERT_EQ(map[static_cast<std::size_t>(code)], is_shirt ? 1 : 0) << code;
+      labelled += is_shirt ? 1 : 0;
+    }
+    EXPECT_GT(labelled, 0);
+  }
+}
+
 TEST(PersonColors, GiveEqualShirtsToTheLatestPersonOfInterest) {
   PersonColors colors;
   colors.learn(1, around(kRed, 1), {});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace cgsr::person {
@@ -20,13 +21,52 @@ std::size_t bin_of(int r, int g, int b) {
   return (static_cast<std::size_t>(r) * kSide + static_cast<std::size_t>(g)) * kSide + static_cast<std::size_t>(b);
 }
 
+/// Calls visit(bin) for each one that is not 0: few are, so four are looked at at once.
+template <class Visit>
+void for_each_met(const std::vector<std::uint16_t>& counts, const Visit& visit) {
+  constexpr std::size_t kAtOnce = 4;
+  for (std::size_t first = 0; first + kAtOnce <= counts.size(); first += kAtOnce) {
+    std::uint64_t together = 0;
+    std::memcpy(&together, counts.data() + first, sizeof together);
+    if (together == 0) continue;
+    for (std::size_t bin = first; bin < first + kAtOnce; ++bin) {
+      if (counts[bin] != 0) visit(bin);
+    }
+  }
+}
+
+/// Calls visit(bin) for a colour and those next to it.
+template <class Visit>
+void for_each_near(int r, int g, int b, const Visit& visit) {
+  for (int i = std::max(0, r - 1); i <= std::min(kSide - 1, r + 1); ++i) {
+    for (int j = std::max(0, g - 1); j <= std::min(kSide - 1, g + 1); ++j) {
+      for (int k = std::max(0, b - 1); k <= std::min(kSide - 1, b + 1); ++k) visit(bin_of(i, j, k));
+    }
+  }
+}
+
 }  // namespace
+
+std::size_t ColorHistogram::bin(const imaging::Rgb& color) {
+  return bin_of(level_of(color.r), level_of(color.g), level_of(color.b));
+}
+
+std::vector<std::uint8_t> ColorHistogram::met_nearby() const {
+  if (total_ == 0) return {};
+  std::vector<std::uint8_t> near(kBins, 0);
+  for_each_met(counts_, [&near](std::size_t bin) {
+    const auto channel = [bin](std::size_t below) { return static_cast<int>(bin / below % kSide); };
+    for_each_near(channel(std::size_t{kSide} * kSide), channel(kSide), channel(1),
+                  [&near](std::size_t one) { near[one] = 1; });
+  });
+  return near;
+}
 
 void ColorHistogram::add(std::span<const imaging::Rgb> samples) {
   if (samples.empty()) return;
   counts_.resize(kBins);
   for (const imaging::Rgb& color : samples) {
-    std::uint16_t& count = counts_[bin_of(level_of(color.r), level_of(color.g), level_of(color.b))];
+    std::uint16_t& count = counts_[bin(color)];
     if (count == std::numeric_limits<std::uint16_t>::max()) continue;
     ++count;
     ++total_;
@@ -49,24 +89,18 @@ void ColorHistogram::fade() {
 
 double ColorHistogram::share(const imaging::Rgb& color) const {
   if (total_ == 0) return 0.0;
-  const int r = level_of(color.r), g = level_of(color.g), b = level_of(color.b);
   std::uint32_t sum = 0;
-  for (int i = std::max(0, r - 1); i <= std::min(kSide - 1, r + 1); ++i) {
-    for (int j = std::max(0, g - 1); j <= std::min(kSide - 1, g + 1); ++j) {
-      for (int k = std::max(0, b - 1); k <= std::min(kSide - 1, b + 1); ++k) sum += counts_[bin_of(i, j, k)];
-    }
-  }
+  for_each_near(level_of(color.r), level_of(color.g), level_of(color.b), [&](std::size_t one) { sum += counts_[one]; });
   return static_cast<double>(sum) / total_;
 }
 
 imaging::Rgb ColorHistogram::bright_level() const {
   std::array<std::array<std::uint32_t, kSide>, 3> levels{};
-  for (std::size_t bin = 0; bin < counts_.size(); ++bin) {
-    if (counts_[bin] == 0) continue;
+  for_each_met(counts_, [&](std::size_t bin) {
     levels[0][bin / (kSide * kSide)] += counts_[bin];
     levels[1][bin / kSide % kSide] += counts_[bin];
     levels[2][bin % kSide] += counts_[bin];
-  }
+  });
   std::array<double, 3> bright{};
   for (std::size_t channel = 0; channel < 3; ++channel) {
     std::uint32_t above = 0;

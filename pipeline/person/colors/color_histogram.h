@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +22,10 @@ class ColorHistogram {
 
   /// \return the share of the samples that have this colour or one next to it, in [0, 1].
   [[nodiscard]] double share(const imaging::Rgb& color) const;
+  /// For each colour, by bin(): whether share() is above 0. Empty where nothing was met.
+  [[nodiscard]] std::vector<std::uint8_t> met_nearby() const;
+  /// \return the place of a colour in met_nearby().
+  [[nodiscard]] static std::size_t bin(const imaging::Rgb& color);
   /// The brightest level of each channel that 2 % of the samples reach: what Alg. 3.1 takes the light from, with outliers left out.
   [[nodiscard]] imaging::Rgb bright_level() const;
 

@@ -21,6 +21,18 @@ color::Light assumed_light(std::span<const imaging::Rgb> positive, double assume
   return {std::max(assumed, bright.r), std::max(assumed, bright.g), std::max(assumed, bright.b)};
 }
 
+/// The colours of all codes: made once, with the first map, of nobody, before the first image.
+const std::vector<imaging::Rgb>& colors_of_codes() {
+  static const std::vector<imaging::Rgb> kColors = [] {
+    std::vector<imaging::Rgb> all;
+    all.reserve(imaging::kColorCodes);
+    for (int code = 0; code < imaging::kColorCodes; ++code)
+      all.push_back(imaging::rgb_of_code(static_cast<std::uint16_t>(code)));
+    return all;
+  }();
+  return kColors;
+}
+
 }  // namespace
 
 SamplingRegions sampling_regions(const Box& face) {
@@ -46,6 +58,7 @@ PersonColors::Person& PersonColors::room_for(Label person) {
 }
 
 void PersonColors::put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+  person.codes_light.reset();
   person.positive.add(textures(positive, person.light));
   person.negative.add(textures(negative, person.light));
 }
@@ -97,20 +110,34 @@ std::vector<Label> PersonColors::order() const {
   return labels;
 }
 
-void PersonColors::make_map(std::span<const color::Light> lights, imaging::LabelTable& map) const {
+void PersonColors::find_codes(Person& person, const color::Light& light) const {
+  person.codes.clear();
+  person.codes_light = light;
+  const std::vector<std::uint8_t> near = person.positive.met_nearby();
+  if (near.empty()) return;
+  const std::vector<imaging::Rgb>& colors = colors_of_codes();
+  for (int code = 0; code < imaging::kColorCodes; ++code) {
+    const auto texture = color::without_light(colors[static_cast<std::size_t>(code)], light);
+    if (near[ColorHistogram::bin(texture)] == 0) continue;
+    const double share = person.positive.share(texture);
+    if (share < parameters_.min_share || share < parameters_.min_ratio * person.negative.share(texture)) continue;
+    person.codes.push_back(static_cast<std::uint16_t>(code));
+  }
+}
+
+void PersonColors::make_map(std::span<const color::Light> lights, imaging::LabelTable& map) {
   map.assign(imaging::kColorCodes, 0);
+  if (people_.empty()) static_cast<void>(colors_of_codes());
   std::vector<std::size_t> by_interest(people_.size());
   for (std::size_t i = 0; i < by_interest.size(); ++i) by_interest[i] = i;
   std::ranges::sort(by_interest, {}, [&](std::size_t i) { return people_[i].interest; });  // the latest is written last
   for (const std::size_t i : by_interest) {
-    const Person& one = people_[i];
+    Person& one = people_[i];
     const color::Light& light = i < lights.size() ? lights[i] : one.light;
-    for (int code = 0; code < imaging::kColorCodes; ++code) {
-      const auto texture = color::without_light(imaging::rgb_of_code(static_cast<std::uint16_t>(code)), light);
-      const double share = one.positive.share(texture);
-      if (share < parameters_.min_share || share < parameters_.min_ratio * one.negative.share(texture)) continue;
-      map[static_cast<std::size_t>(code)] = static_cast<std::uint16_t>(i + 1);
-    }
+    const bool same = one.codes_light && one.codes_light->r == light.r && one.codes_light->g == light.g &&
+                      one.codes_light->b == light.b;
+    if (!same) find_codes(one, light);
+    for (const std::uint16_t code : one.codes) map[code] = static_cast<std::uint16_t>(i + 1);
   }
 }
 

@@ -64,8 +64,8 @@ class PersonColors {
 
   /// The RGB-to-person map, over the colour codes of an image: 0 is nobody, i + 1 is the person at place i of order().
   /// \param lights  the light of each person now, in the order of order(); missing ones: as it was at learning.
-  /// Cost: 3 million instructions per person: made when something was learned or the light changed, not in every image.
-  void make_map(std::span<const color::Light> lights, imaging::LabelTable& map) const;
+  /// Cost: 4 million instructions for each person who was learned, or whose light changed, since the last one.
+  void make_map(std::span<const color::Light> lights, imaging::LabelTable& map);
   /// The people by place.
   [[nodiscard]] std::vector<Label> order() const;
 
@@ -75,11 +75,14 @@ class PersonColors {
     std::uint64_t interest = 0;  // larger: later
     color::Light light{1.0, 1.0, 1.0};
     ColorHistogram positive, negative;
+    std::vector<std::uint16_t> codes;           // those that are this person's
+    std::optional<color::Light> codes_light{};  // under which; nothing: they are to be looked for again
   };
   Person* find(Label person);
   [[nodiscard]] const Person* find(Label person) const;
   Person& room_for(Label person);
-  void put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
+  void find_codes(Person& person, const color::Light& light) const;
+  static void put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
 
   PersonColorParameters parameters_;
   std::vector<Person> people_;
