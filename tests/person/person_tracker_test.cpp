@@ -138,6 +138,27 @@ TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
 }
 
 // 6.3.1: a shirt as large as the wall is none.
+// Two known people side by side: the shirt of the person of interest counts, not the larger one.
+TEST(PersonTracker, KeepsToTheShirtOfThePersonOfInterestBesideALargerOne) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kBlue);
+  constexpr Box kSmaller{20, 90, 60, 70}, kLarger{200, 80, 80, 100};
+  Picture both;
+  both.fill(kSmaller, kRed);
+  both.fill(kLarger, kBlue);
+  PersonImage image{both.view()};
+  EXPECT_EQ(tracker.update(image).person, 2) << "nobody is of interest";
+  image.interest = 1;
+  for (int i = 0; i < 6; ++i) {
+    const auto sighting = tracker.update(image);
+    EXPECT_EQ(sighting.person, 1);
+    EXPECT_EQ(sighting.box, kSmaller);
+  }
+  const Picture blue = standing(kBlue);
+  EXPECT_EQ(tracker.update({blue.view(), std::nullopt, 1}).person, 2) << "who is of interest is not there";
+}
+
 TEST(PersonTracker, VetoesAShirtOfImplausibleSize) {
   PersonTracker tracker;
   learn(tracker, 1, kRed);

@@ -1,5 +1,6 @@
 #include "pipeline/person/tracking/identifier.h"
 
+#include <tuple>
 #include <utility>
 
 #include "pipeline/person/colors/color_histogram.h"
@@ -24,18 +25,50 @@ void Identifier::exchange_with_recognizer(const ImageView& image) {
   asking_ = true;
 }
 
-// The face of the person of interest; the largest one that was compared where his is not followed. While it is followed and not seen in this image,
-// the others are other people's and say nothing of him.
-std::optional<FaceSighting> Identifier::face_of(std::optional<Label> interest) const {
+// Whether a face is of somebody who stands beside the person of interest: it says nothing of him. A face above his shirt does. Where a task asks for somebody
+// it is told at once who else is there; else the latest person of interest stays it until he is forgotten.
+bool Identifier::is_beside(const FaceTrack& face, std::optional<Label> asked) const {
+  constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
+  const std::optional<Label> interest = asked ? asked : interest_;
+  if (!interest || face.match->label == interest) return false;
+  if (last_.source != PersonSource::kShirt || last_.person != interest) return !asked;
+  const Box& shirt = last_.box;
+  const double middle = face.box.x + face.box.width / 2, above = shirt.y - face.box.y;
+  const bool over = middle >= shirt.x && middle <= shirt.x + shirt.width;
+  return !over || above < 0.0 || above > kMostAbove * face.box.width;
+}
+
+// The face of the person of interest; the largest one that was compared where his is not followed, somebody's who is known before a stranger's. While it is
+// followed and not seen in this image, the others are other people's and say nothing of him.
+std::optional<FaceSighting> Identifier::face_of(std::optional<Label> asked) const {
+  const std::optional<Label> interest = asked ? asked : interest_;
   const FaceTrack* chosen = nullptr;
   const auto rank = [&](const FaceTrack& track) {
-    return std::pair(interest && track.match->label == interest, track.box.area());
+    return std::tuple(interest && track.match->label == interest, track.match->label.has_value(), track.box.area());
   };
   for (const FaceTrack& track : faces_.tracks()) {
-    if (track.match && (chosen == nullptr || rank(track) > rank(*chosen))) chosen = &track;
+    if (!track.match || is_beside(track, asked)) continue;
+    if (chosen == nullptr || rank(track) > rank(*chosen)) chosen = &track;
   }
   if (chosen == nullptr || !chosen->seen) return std::nullopt;
   return FaceSighting{chosen->box, *chosen->match};
+}
+
+// Whoever was identified is of interest until he has not been for some images: one or two without him are no reason to turn to somebody else (6.2.2, the
+// latest person of interest).
+void Identifier::remember(const PersonSighting& now, std::optional<Label> asked) {
+  constexpr int kImagesToForget = 15;
+  const bool known = now.person && *now.person != kStranger;
+  const bool stays = known && now.person == interest_;
+  images_without_ = stays ? 0 : images_without_ + 1;
+  if (asked) {
+    interest_ = asked;
+  } else if (known && (!interest_ || now.source == PersonSource::kFace)) {
+    interest_ = now.person;
+    images_without_ = 0;
+  } else if (images_without_ >= kImagesToForget) {
+    interest_.reset();
+  }
 }
 
 // Who is known by his shirt alone may be somebody else: his face is looked for first.
@@ -47,7 +80,7 @@ std::optional<Box> Identifier::face_above_shirt() const {
   return Box{middle - face_px / 2, last_.box.y - kAbove * face_px, face_px, face_px};
 }
 
-PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> interest, WorkBudget& budget) {
+PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> asked, WorkBudget& budget) {
   if (tracker_.face_is_due()) {
     faces_.look(image, budget, face_above_shirt());
   } else {
@@ -57,8 +90,9 @@ PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> i
   // How the region was lit in which the person was last is how it is lit now.
   const ImageContext context = last_.box.empty() ? ImageContext{} : context_of(region_colors(image, last_.box));
   PeopleInView people;
-  people.person = tracker_.update({image, face_of(interest)}, context);
+  people.person = tracker_.update({image, face_of(asked), asked ? asked : interest_}, context);
   last_ = people.person;
+  remember(last_, asked);
   for (const FaceTrack& track : faces_.tracks()) {
     if (track.missed > 0) continue;
     SeenFace& face = people.faces[people.face_count++];

@@ -59,19 +59,24 @@ class Identifier {
   Identifier(FaceDetector detector, std::unique_ptr<FaceRecognizer> recognizer,
              const IdentifierParameters& parameters = {});
 
-  /// \param image  YUYV.  \param interest  whose face counts where several are in view; nothing: the largest that is known.
+  /// \param image  YUYV.  \param asked  whose face and shirt count where several are in view; nothing: the latest person of interest, who is the last one
+  ///     that was identified and is still there; if there is none, the largest face that is known.
   /// \param budget  a unit for each known face that is looked for, for the place above the shirt, and for each step of the search for others.
-  PeopleInView identify(const ImageView& image, std::optional<Label> interest, WorkBudget& budget);
+  PeopleInView identify(const ImageView& image, std::optional<Label> asked, WorkBudget& budget);
 
  private:
   void exchange_with_recognizer(const ImageView& image);
-  [[nodiscard]] std::optional<FaceSighting> face_of(std::optional<Label> interest) const;
+  [[nodiscard]] std::optional<FaceSighting> face_of(std::optional<Label> asked) const;
+  [[nodiscard]] bool is_beside(const FaceTrack& face, std::optional<Label> asked) const;
+  void remember(const PersonSighting& now, std::optional<Label> asked);
   [[nodiscard]] std::optional<Box> face_above_shirt() const;
 
   FaceTracks faces_;
   std::unique_ptr<FaceRecognizer> recognizer_;
   PersonTracker tracker_;
   PersonSighting last_;
+  std::optional<Label> interest_;  // the latest person of interest
+  int images_without_ = 0;         // since the latest person of interest was identified
   bool asking_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 #include <cstddef>
+#include <utility>
 
 namespace cgsr::person {
 namespace {
@@ -13,7 +14,9 @@ ShirtClassifier::ShirtClassifier(const ShirtParameters& parameters)
     : parameters_(parameters),
       colors_(parameters.colors),
       map_(imaging::kColorCodes, 0),
-      reduced_(parameters.max_width_px, parameters.max_height_px) {}
+      reduced_(parameters.max_width_px, parameters.max_height_px) {
+  colors_.make_map({}, map_);
+}
 
 bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
   if (!last_face_) return false;
@@ -24,6 +27,9 @@ bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
   box_ = {};
+  // Not in the image in which something was learned: there faces were looked for as well.
+  if (map_is_due_) colors_.make_map({}, map_);
+  map_is_due_ = false;
   if (colors_.people() == 0 || !imaging::reduce(input.image, kFactor, map_, reduced_)) return std::nullopt;
   const auto order = colors_.order();
   const auto pixels = static_cast<std::size_t>(reduced_.width_px) * static_cast<std::size_t>(reduced_.height_px);
@@ -33,7 +39,10 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
   for (const Blob& blob : found) {
     const Box box{blob.box.x * kFactor, blob.box.y * kFactor, blob.box.width * kFactor, blob.box.height * kFactor};
     if (!is_plausible(box, double(blob.area_px) * kFactor * kFactor)) continue;
-    if (largest != nullptr && blob.area_px <= largest->area_px) continue;
+    const auto rank = [&](const Blob& one) {
+      return std::pair(input.interest && order[one.label - std::size_t{1}] == *input.interest, one.area_px);
+    };
+    if (largest != nullptr && rank(blob) <= rank(*largest)) continue;
     largest = &blob;
     box_ = box;
   }
@@ -47,7 +56,7 @@ void ShirtClassifier::learn(const PersonImage& input, const FaceSighting& face) 
   const auto right = region_colors(input.image, regions.background[1]);
   background.insert(background.end(), right.begin(), right.end());
   colors_.learn(*face.match.label, region_colors(input.image, regions.shirt), background);
-  colors_.make_map({}, map_);
+  map_is_due_ = true;
 }
 
 void ShirtClassifier::train(Label label, std::optional<Label>) {
@@ -65,7 +74,7 @@ void ShirtClassifier::observe_face(const PersonImage& input, const FaceSighting&
 
 void ShirtClassifier::forget(Label person) {
   colors_.forget(person);
-  colors_.make_map({}, map_);
+  map_is_due_ = true;
   if (seen_ == person) seen_.reset();
 }
 

@@ -23,6 +23,8 @@ struct FaceSighting {
 struct PersonImage {
   ImageView image;  ///< YUYV, of at most the size that the tracker was made for.
   std::optional<FaceSighting> face = std::nullopt;
+  std::optional<Label> interest =
+      std::nullopt;  ///< whose shirt counts where several are in view; nothing: the largest.
 };
 
 struct ShirtParameters {
@@ -50,7 +52,8 @@ struct ShirtParameters {
   }
 };
 
-/// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2).
+/// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
+/// interest is in view, that person, however large the others are.
 ///
 /// Threads: one. Allocates when it is trained.
 class ShirtClassifier final : public Classifier<PersonImage> {
@@ -77,6 +80,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   ShirtParameters parameters_;
   PersonColors colors_;
   imaging::LabelTable map_;
+  bool map_is_due_ = true;  // something was learned since it was made
   imaging::ReducedImage reduced_;
   BlobFinder blobs_;
   PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
