@@ -14,8 +14,8 @@
 
 namespace cgsr::stages {
 
-/// Whether somebody is identified.
-enum class PersonState : std::uint8_t { kNobody, kEnrolled, kStranger };
+/// Whether somebody is identified. Unsure: a face is in view, and nobody is identified yet. Ours.
+enum class PersonState : std::uint8_t { kNobody, kEnrolled, kStranger, kUnsure };
 std::string_view to_string(PersonState state);
 
 /// Who is in view. People have numbers here and everywhere behind it; their names stand in the identities file alone.
@@ -26,7 +26,7 @@ struct IdentifiedPeople : person::PeopleInView {
   static void describe(Self& self, Visitor& visit) {
     const bool somebody = self.person.person.has_value();
     const Box& box = self.person.box;
-    visit.choice("person", state_of(self.person), PersonState::kStranger, "who is identified");
+    visit.choice("person", state_of(self), PersonState::kUnsure, "who is identified");
     visit.integer("person_number", self.person.person, "", "the number in the identities file; 0 for a stranger");
     visit.choice("person_by", self.person.source, person::PersonSource::kShirt,
                  "the characteristic that identified the person");
@@ -38,7 +38,7 @@ struct IdentifiedPeople : person::PeopleInView {
     visit.integer("faces", self.face_count, "", "faces in view");
   }
 
-  static PersonState state_of(const person::PersonSighting& sighting);
+  static PersonState state_of(const person::PeopleInView& people);
 };
 
 /// Who is in view (chapter 6): faces are followed and named, the face of the person of interest and the shirt below it teach each other (Alg. 6.1).
@@ -62,6 +62,7 @@ class IdentifyStage {
  private:
   person::Identifier identifier_;
   std::optional<person::Label> last_person_;
+  PersonState last_state_ = PersonState::kNobody;
 };
 
 }  // namespace cgsr::stages

@@ -82,7 +82,8 @@ behavior::Sighting FollowPersonTask::sighting_of(const person::PersonSighting& w
 Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
   const person::PersonSighting who = people != nullptr ? people->person : person::PersonSighting{};
-  const bool enrolled = IdentifiedPeople::state_of(who) == PersonState::kEnrolled;
+  const PersonState state = people != nullptr ? IdentifiedPeople::state_of(*people) : PersonState::kNobody;
+  const bool enrolled = state == PersonState::kEnrolled;
   if (person_ == person::kStranger && enrolled) person_ = *who.person;
   if (last_) last_->age += elapsed;
   if (who.person) last_.reset();
@@ -90,6 +91,7 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
   std::string_view reason = behavior::to_string(follow.reason);
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";
+  if (!last_ && state == PersonState::kUnsure) reason = "not sure who is in view";
   Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
   decision.requests = first_requests();
   return decision;

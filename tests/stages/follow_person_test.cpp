@@ -68,6 +68,19 @@ TEST_F(FollowPerson, StandsBeforeAStrangerAndBeforeSomebodyElse) {
   }
 }
 
+TEST_F(FollowPerson, SaysThatItIsNotSureWhereAFaceHasNoNameYet) {
+  auto follower = task(4);
+  FrameResult frame;
+  frame.people.age = Duration::zero();
+  frame.people.value.face_count = 1;
+  EXPECT_EQ(IdentifiedPeople::state_of(frame.people.value), PersonState::kUnsure);
+  const Decision decision = follower.decide(frame, image_, kImage);
+  EXPECT_TRUE(decision.halt);
+  EXPECT_EQ(decision.reason, "not sure who is in view");
+  frame.people.value.face_count = 0;
+  EXPECT_EQ(IdentifiedPeople::state_of(frame.people.value), PersonState::kNobody);
+}
+
 TEST_F(FollowPerson, GoesOnWhereAFewImagesShowNobodyAndStopsThen) {
   auto follower = task(4);
   for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
