@@ -7,6 +7,7 @@
 #include "src/commands/command.h"
 #include "src/commands/option_checks.h"
 #include "src/commands/people_run.h"
+#include "src/commands/run_robot.h"
 #include "src/output/progress.h"
 
 namespace cgsr::app {
@@ -53,6 +54,29 @@ int run_forget(const PeopleOptions& options) {
 
 using Options = std::shared_ptr<PeopleOptions>;
 
+void add_follow(CLI::App& people, int& exit_code) {
+  const auto run = std::make_shared<RunCommand>();
+  run->person.emplace();
+  auto* command = people.add_subcommand(
+      "follow", "run a robot whose task is to follow somebody (6.4): cgsr run with more of its options");
+  command->add_option("--config", run->config, "the robot's file")->required();
+  command->add_option("--identities", run->person->identities,
+                      "the identities file instead of the one that the file names");
+  command->add_option("--name", run->person->name, "whom; nobody named: whoever is identified first");
+  command->add_option("--seed", run->seed, "of the simulation instead of the one that the file names")
+      ->check(whole_number());
+  command->add_option("--duration", run->run.duration_s, "end after that many seconds")->check(in_range(1e-3, 1e6));
+  command->add_flag("--dry-run", run->run.dry_run, "compute and record, command nothing");
+  command->add_flag("--arm", run->run.arm, "arm as soon as nothing speaks against it: the robot will move");
+  command->add_option("--csv", run->run.csv, "write a row per image");
+  command->add_option("--video", run->run.video, "write a video of what the robot saw and did, with numbers");
+  command->add_option("--json", run->json, "write the summary for machines");
+  add_force_option(*command, run->force);
+  command->add_option("--log-level", run->log_level, "trace, debug, info, warning, error or off")
+      ->capture_default_str();
+  command->callback([run, &exit_code] { exit_code = run_robot(*run); });
+}
+
 CLI::App* add(CLI::App& people, const char* name, const char* meaning, const Options& options) {
   auto* command = people.add_subcommand(name, meaning);
   command
@@ -90,6 +114,8 @@ void add_people_command(CLI::App& app, int& exit_code) {
                           "identities file and on the terminal");
   add_force_option(*identifying, options->force);
   identifying->callback([options, &exit_code] { exit_code = run_identify(*options); });
+
+  add_follow(*people, exit_code);
 
   auto* forgetting = add(*people, "forget", "delete somebody's face and name", options);
   forgetting->add_option("--name", options->name, "of the person")->required();

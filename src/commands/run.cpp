@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "src/commands/option_checks.h"
 #include "src/commands/run_robot.h"
 #include "src/config/load.h"
+#include "src/input/identities_file.h"
 #include "src/input/pose_file.h"
 #include "src/output/text_file.h"
 #include "src/sinks/csv_sink.h"
@@ -32,10 +34,31 @@ std::string ended_by(const boot::Robot& robot) {
   return "the duration";
 }
 
+/// The person task instead of the one that the file names. A name is looked up here: further on there are numbers alone.
+Result<void> follow(const FollowedPerson& person, const std::string& robot_file, config::Robot& config) {
+  if (!person.identities.empty()) config.person.identities = person.identities;
+  if (!config.person.enabled()) {
+    return fail(fmt::format("{}: person.identities is empty and no --identities is given: who is known?", robot_file));
+  }
+  config.task.kind = config::TaskKind::kPerson;
+  if (person.name.empty()) return {};
+  const auto identities = load_identities(config.person.identities);
+  if (!identities) return tl::unexpected(identities.error());
+  const auto one = std::ranges::find(identities->people, person.name, &person::Identity::name);
+  if (one == identities->people.end()) {
+    return fail(fmt::format("{}: there is no '{}'", config.person.identities, person.name));
+  }
+  config.task.person.number = one->number;
+  return {};
+}
+
 Result<void> apply(const RunCommand& options, config::Robot& config) {
   if (!options.input.empty()) config.camera.replay.path = options.input;
   if (!options.model.empty()) config.run.model = options.model;
   if (options.seed >= 0) config.sim.seed = options.seed;
+  if (options.person) {
+    if (auto followed = follow(*options.person, options.config, config); !followed) return followed;
+  }
   if (config.needs_object() && config.run.model.empty() && config.run.learn.empty()) {
     return fail(
         fmt::format("{}: run.model is empty and no --model is given: what shall be followed? (cgsr learn makes a "

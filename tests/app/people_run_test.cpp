@@ -126,6 +126,49 @@ TEST_F(RunWithPeople, EnrollsTwoWhoLookAlikeAndRefusesTheSameFaceUnderAnotherNam
   EXPECT_THAT(again.output + again.errors, HasSubstr("who is enrolled already"));
 }
 
+// Two who are known stand side by side and look at the robot, which stands as well: whoever was identified first stays the person of interest (6.2.2), and
+// whom `people follow` names is it from the beginning.
+TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
+  enroll(0, kName);
+  enroll(3, "Dora");
+  std::string world = read_text(CGSR_SOURCE_DIR "/config/worlds/people.toml");
+  world.resize(world.find("[[person]]"));
+  world +=
+      "[[person]]\nname = \"left\"\nidentity = 0\nwalk = { stop = [{ at_m = [2.4, 0.4, 0.0], heading_deg = 194.0 }] }\n"
+      "[[person]]\nname = \"right\"\nidentity = 3\nwalk = { stop = [{ at_m = [2.4, -0.4, 0.0], heading_deg = 166.0 }] "
+      "}\n";
+  write_text(scratch_ / "two.toml", world);
+  write_text(scratch_ / "scenario.toml",
+             "world = \"two.toml\"\nrobot = \"robot\"\nends_at_s = 3.0\n[[line]]\nname = \"arming\"\ninput = true\n"
+             "[[line]]\nname = \"face light\"\n");
+  const Keys scenario{{"sim.scenario", "\"scenario.toml\""}};
+  Keys anybody = scenario;
+  anybody.insert({{"task.kind", "\"line\""}});
+  const auto numbers_in = [&](const std::vector<std::string>& words) {
+    auto all = words;
+    all.insert(all.end(), {"--csv", scratch_ / "run.csv", "--force"});
+    const auto run = run_cgsr(all);
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    std::map<std::string, int> images;
+    int two_faces = 0;
+    for (const Row& row : read_rows(read_text(scratch_ / "run.csv"))) {
+      two_faces += row.at("faces") == "2" ? 1 : 0;
+      if (!row.at("person_number").empty()) ++images[row.at("person_number")];
+    }
+    EXPECT_GE(two_faces, 20) << "both faces are in view";
+    return images;
+  };
+  const auto first = numbers_in({"run", "--config", robot(anybody)});
+  ASSERT_EQ(first.size(), 1U) << "one person of interest";
+  EXPECT_GE(first.begin()->second, 40);
+  const auto named = numbers_in({"people", "follow", "--config", robot(scenario), "--name", "Dora"});
+  EXPECT_GE(named.contains("2") ? named.at("2") : 0, 40);
+  EXPECT_LE(named.contains("1") ? named.at("1") : 0, 15) << "before Dora's face has a name";
+  const auto nobody = run_cgsr({"people", "follow", "--config", robot(scenario), "--name", "Emil"});
+  EXPECT_NE(nobody.exit_code, 0);
+  EXPECT_THAT(nobody.errors, HasSubstr("there is no 'Emil'"));
+}
+
 TEST_F(RunWithPeople, RefusesARobotThatKnowsNobody) {
   const auto run = run_cgsr({"check", "--config", robot()});
   EXPECT_NE(run.exit_code, 0);
