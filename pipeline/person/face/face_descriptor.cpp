@@ -128,8 +128,9 @@ struct Offset {
 
 /// Place of a view's point from the middle of the face, in steps.
 Offset place_of(int point) {
-  const int column = point % kViewSide, row = point / kViewSide;
-  return {double(kSpacing) * (column - kViewSide / 2), double(kSpacing) * (row - kViewSide / 2)};
+  constexpr int kMiddle = kViewSide / 2;
+  const int x = kSpacing * (point % kViewSide - kMiddle), y = kSpacing * (point / kViewSide - kMiddle);
+  return {static_cast<double>(x), static_cast<double>(y)};
 }
 
 /// How a face was moved, turned and scaled against a view: offset = (a x - b y + dx, b x + a y + dy).
@@ -149,8 +150,10 @@ Offset likenesses(const FaceDescriptor& face, const FaceView& view, int point, L
     const std::uint8_t* seen = face.dense.data() + std::ptrdiff_t{row} * kSiftSize;
     for (std::size_t x = 0; x < kSteps; ++x, seen += kSiftSize) alike[y * kSteps + x] = dot(enrolled, seen);
   }
-  const auto most = std::max_element(alike.begin(), alike.end()) - alike.begin();
-  return {double(most % std::ptrdiff_t{kSteps}) - kReach, double(most / std::ptrdiff_t{kSteps}) - kReach};
+  const auto most = static_cast<int>(std::max_element(alike.begin(), alike.end()) - alike.begin());
+  constexpr int kAcross = static_cast<int>(kSteps);
+  const int x = most % kAcross - kReach, y = most / kAcross - kReach;
+  return {static_cast<double>(x), static_cast<double>(y)};
 }
 
 /// The similarity that most points agree with: least squares, again with weights that fall with the distance (Geman and McClure, 1987).
