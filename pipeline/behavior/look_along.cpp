@@ -73,11 +73,8 @@ bool LookAlong::note(std::span<const FaceAtBearing> faces, double elapsed_s) {
   return stay;
 }
 
-// A name is seldom given wrongly, and often withheld while a head is turned: half as much is enough for it as for a stranger.
 PersonInLine LookAlong::most_likely(const Met& met) {
-  constexpr double kName = 2.0;  // how much more a name counts
-  const auto weight = [](const Vote& vote) { return vote.confidence * (vote.number == 0 ? 1.0 : kName); };
-  const Vote& vote = *std::ranges::max_element(met.votes, {}, weight);
+  const Vote& vote = *std::ranges::max_element(met.votes, {}, &Vote::confidence);
   return {met.bearing_rad, vote.number, vote.confidence / std::max(1, met.images)};
 }
 
