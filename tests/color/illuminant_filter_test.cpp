@@ -3,38 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <random>
 
 #include "pipeline/color/track/relight.h"
+#include "tests/color/surface.h"
 
 namespace cgsr::color {
 namespace {
 
 constexpr Light kSame{1.0, 1.0, 1.0};
 
-/// A surface of several colours, each in a stripe.
-ObjectView surface(std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> level(0.15, 0.75);
-  ObjectView view;
-  imaging::Yuv color;
-  for (std::size_t i = 0; i < view.y.size(); ++i) {
-    if (i % 128 == 0) color = imaging::yuv_of_rgb({level(random), level(random), level(random)});
-    view.y[i] = static_cast<std::uint8_t>(std::lround(color.y));
-    view.u[i] = static_cast<std::uint8_t>(std::lround(color.u));
-    view.v[i] = static_cast<std::uint8_t>(std::lround(color.v));
-  }
-  return view;
-}
-
 ChannelQuantiles under(const ObjectView& view, const Light& light) {
   return channel_quantiles(relit(view, light));
-}
-
-double error(const Light& a, const Light& b) {
-  return std::max({std::abs(a.r / b.r - 1.0), std::abs(a.g / b.g - 1.0), std::abs(a.b / b.b - 1.0)});
 }
 
 const ObjectView kRoom = surface(1);

@@ -4,34 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "pipeline/color/track/relight.h"
+#include "tests/color/surface.h"
 
 namespace cgsr::color {
 namespace {
 
-/// A surface of several colours, each in a stripe.
-ObjectView surface(std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> level(0.15, 0.75);
-  ObjectView view;
-  imaging::Yuv color;
-  for (std::size_t i = 0; i < view.y.size(); ++i) {
-    if (i % 128 == 0) color = imaging::yuv_of_rgb({level(random), level(random), level(random)});
-    view.y[i] = static_cast<std::uint8_t>(std::lround(color.y));
-    view.u[i] = static_cast<std::uint8_t>(std::lround(color.u));
-    view.v[i] = static_cast<std::uint8_t>(std::lround(color.v));
-  }
-  return view;
-}
-
 Light slow_light(int image) {
   return {0.85 + 0.15 * std::sin(0.05 * image), 0.9 + 0.1 * std::cos(0.04 * image), 0.8 + 0.2 * std::sin(0.03 * image)};
-}
-
-double error(const Light& a, const Light& b) {
-  return std::max({std::abs(a.r / b.r - 1.0), std::abs(a.g / b.g - 1.0), std::abs(a.b / b.b - 1.0)});
 }
 
 /// What a tracker hands over in each image.
