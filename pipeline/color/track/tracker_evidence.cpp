@@ -30,8 +30,8 @@ Tint Tracker::State::tint(const Box& at) const {
   Tint tint;
   tint.view = view_object(pyramid, at);
   tint.quantiles = channel_quantiles(tint.view);
-  tint.gain = light_gain(learned_quantiles, tint.quantiles);
-  const ColorAmounts seen(relit(tint.view, inverse(tint.gain)));
+  tint.measured = measured_gain(learned_quantiles, tint.quantiles);
+  const ColorAmounts seen(relit(tint.view, inverse(tint.measured.gain)));
   tint.agreement = learned_amounts.agreement(seen);
   return tint;
 }
@@ -83,8 +83,8 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
     const Tint its_tint = tint(window);
     if (its_tint.agreement < kGlanceAgreement * doubt.min_found_agreement) continue;
-    const LocalAnswer its_answer = local.look(pyramid, centred_on(window, size.width_px, size.height_px), its_tint.gain,
-                                              LocalTracker::Colors::kFirst);
+    const LocalAnswer its_answer = local.look(pyramid, centred_on(window, size.width_px, size.height_px),
+                                              its_tint.measured.gain, LocalTracker::Colors::kFirst);
     if (its_answer.score <= best.score) continue;
     best = its_answer;
     seen = its_tint;
@@ -92,7 +92,7 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   if (best.score < kGlanceScore * doubt.min_found_score * first_score) return false;
   if (best.sharpness < kGlanceSharpness * doubt.min_found_sharpness) return false;
   for (int round = 0; round < kRefinements && budget.grant(); ++round) {
-    best = local.look(pyramid, best.box, seen.gain, LocalTracker::Colors::kFirst);
+    best = local.look(pyramid, best.box, seen.measured.gain, LocalTracker::Colors::kFirst);
     best.box = grown(best.box, local.growth(pyramid, best.box), model, parameters.max_size_ratio);
     seen = tint(best.box);
   }
@@ -100,9 +100,9 @@ bool Tracker::State::find(const imaging::ReducedImage& reduced, const SearchResu
   if (best.sharpness < doubt.min_found_sharpness || best.score < doubt.min_found_score * first_score) return false;
   if (seen.agreement < doubt.min_found_agreement || its_divergence > parameters.max_divergence) return false;
   place = {best, its_divergence};
-  light.set(seen.gain);
+  light.set(seen.measured.gain);
   light.lose();
-  if (!located) illuminant.begin(seen.gain, image_quantiles);
+  if (!located) illuminant.begin(seen.measured.gain, image_quantiles);
   images_since_sight = 0;
   return true;
 }

@@ -77,8 +77,8 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   const Box now = grown(place.local.box, local.growth(pyramid, place.local.box), model, parameters.max_size_ratio);
   box = with_centre_inside(now, pyramid.width_px(), pyramid.height_px());
   const Tint seen = tint(box);
-  light.update(seen.quantiles, seen.gain, seen.agreement);
-  illuminant.add(image_quantiles, light.change(), measured_gain(learned_quantiles, seen.quantiles));
+  light.update(seen.quantiles, seen.measured.gain, seen.agreement);
+  illuminant.add(image_quantiles, light.change(), seen.measured);
   const ColorAmounts amounts(relit(seen.view, inverse(light.gain())));
   foreign_images = is_foreign(place, seen, amounts) ? foreign_images + 1 : 0;
   if (foreign_images >= parameters.doubt.max_foreign_images) {

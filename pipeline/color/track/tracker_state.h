@@ -22,7 +22,7 @@ struct Place {
 struct Tint {
   ObjectView view;
   ChannelQuantiles quantiles;
-  Light gain;              ///< of the light, from the learned image's, by these colours alone.
+  MeasuredGain measured;   ///< of the light, from the learned image's, by these colours alone.
   double agreement = 0.0;  ///< ColorAmounts::agreement with the learned ones, that light taken out.
 };
 
