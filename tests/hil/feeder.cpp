@@ -2,8 +2,8 @@
 // switch on a line of gpio-sim. Runs in the guest beside the service (docs/hil.md).
 //
 // The first image stands until the file `play` appears in the control folder; then the images follow at their rate and the switch is pressed when
-// it is due. Files of the names `silent`, `estop`, `poweroff` and `flagged` in that folder are faults as long as they exist. SIGTERM ends it: only then
-// it writes what it did and what it cost.
+// it is due. Files of the names `silent`, `estop`, `poweroff` and `flagged` in that folder are faults as long as they exist; while `still` exists, no
+// image is written. SIGTERM ends it: only then it writes what it did and what it cost.
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -28,6 +28,7 @@
 #include "tests/hil/base_feeder.h"
 #include "tests/hil/flag_button.h"
 #include "tests/hil/image_feeder.h"
+#include "tests/hil/image_order.h"
 
 namespace cgsr::hil {
 namespace {
@@ -52,6 +53,7 @@ struct Options {
 
 struct Controls {
   std::atomic<bool> play{false};
+  std::atomic<bool> still{false};
   std::atomic<bool> silent{false};
   std::atomic<bool> emergency_stop{false};
   std::atomic<bool> powered_off{false};
@@ -109,7 +111,11 @@ class ImageThread {
   ImageThread(const Options& options, Controls& controls)
       : feeder_(options.images), controls_(controls), period_(seconds(1.0 / options.rate_hz)) {}
 
-  Result<void> load() { return feeder_.load(false); }
+  Result<void> load() {
+    auto loaded = feeder_.load(false);
+    if (loaded) order_.emplace(feeder_.images());
+    return loaded;
+  }
   Result<void> load_rest() { return feeder_.load_rest(); }
 
   void run() {
@@ -121,7 +127,7 @@ class ImageThread {
   [[nodiscard]] nlohmann::ordered_json report() const {
     return {{"written", written_},
             {"refused", refused_},
-            {"played", next_},
+            {"played", order_ ? order_->played() : 0},
             {"of", feeder_.images()},
             {"reopened", opened_ - 1},
             {"first_played_s", to_seconds(controls_.first_played.load().time_since_epoch())},
@@ -138,15 +144,16 @@ class ImageThread {
       if (auto opened = feeder_.open(); !opened) return report_once(opened.error().message);
       ++opened_;
     }
-    const bool plays = controls_.play.load() && next_ < feeder_.images();
-    const std::size_t image = next_ == 0 && !plays ? 0 : plays ? next_ : next_ - 1;
-    if (plays && next_ == 0) controls_.first_played.store(at);
-    if (auto put = feeder_.put(image); !put) {
+    const ImageOrder::Wanted wanted{controls_.play.load(), controls_.still.load()};
+    const auto image = order_->next(wanted);
+    if (!image) return;
+    if (order_->plays_on(wanted) && order_->played() == 0) controls_.first_played.store(at);
+    if (auto put = feeder_.put(*image); !put) {
       ++refused_;
       return report_once(put.error().message);
     }
     ++written_;
-    if (plays) ++next_;
+    order_->written(wanted);
   }
 
   void report_once(const std::string& problem) {
@@ -157,7 +164,7 @@ class ImageThread {
   ImageFeeder feeder_;
   Controls& controls_;
   Duration period_;
-  std::size_t next_ = 0;
+  std::optional<ImageOrder> order_;  // once it is known how many there are
   std::uint64_t written_ = 0;
   std::uint64_t refused_ = 0;
   int opened_ = 0;
@@ -213,6 +220,9 @@ class BaseThread {
       case 0:
         if (!controls_.play.load()) controls_.play.store(exists(options_.controls, "play"));
         break;
+      case 1:
+        controls_.still.store(exists(options_.controls, "still"));
+        break;
       case 3:
         controls_.silent.store(exists(options_.controls, "silent"));
         break;
@@ -242,7 +252,7 @@ class BaseThread {
   bool pressed_ = false;
 };
 
-/// Flags every image of the camera while it is wanted. Both ends of vivid use a press up, so it is pressed often.
+/// Flags every image of the camera while it is wanted. Whichever end of vivid comes first uses a press up: with `still`, that is the camera.
 void flag_images(const Options& options) {
   constexpr int kPresses = 9;
   FlagButton button(options.camera);
