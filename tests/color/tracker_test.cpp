@@ -19,6 +19,7 @@ constexpr int kWidth_px = 320;
 constexpr int kHeight_px = 240;
 constexpr Light kLearnedLight{0.8, 0.8, 0.8};
 constexpr Box kFirst{130, 90, 40, 52};
+constexpr int kStrongBlur_px = 45;
 
 double overlap(const Box& a, const Box& b) {
   const double shared = intersection(a, b).area();
@@ -93,6 +94,12 @@ class Bench {
     const imaging::ReducedImage& reduced = reduce(image);
     const SearchResult matches = search_->search(reduced, tracker_->search_size(), budget);
     return tracker_->track(image, reduced, matches, budget);
+  }
+  /// As in an image that was not searched.
+  TrackedObject look_nearby(test::Painting painting) {
+    UnlimitedBudget budget;
+    const ImageView image = painting.photograph(1.5, ++seed_);
+    return tracker_->track(image, reduce(image), {}, budget);
   }
   const imaging::ReducedImage& reduce(const ImageView& image) {
     const int factor = imaging::reduction_for(image.width_px, image.height_px, search_->object_shorter_side_px());
@@ -184,6 +191,38 @@ TEST(Tracker, RecognisesABlurredObjectElsewhere) {
     if (found.found && overlap(found.box, place) > 0.5) ++found_images;
   }
   EXPECT_GE(found_images, 3);
+}
+
+// In doubt it is followed without being reported, so that it is there when it looks like itself again. No search helps here.
+TEST(Tracker, FollowsWhatMayBeTheLostObjectWithoutReportingIt) {
+  TrackParameters parameters;
+  parameters.doubt.places_while_lost = 0;
+  Bench bench(parameters);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(moved(60, 90)).found) << i;
+  int reported = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Box place = moved(60 + 4 * i, 90);
+    if (bench.look_nearby(blurred(room(&place), kStrongBlur_px)).found) ++reported;
+  }
+  EXPECT_LT(reported, 10);
+  const Box place = moved(220, 90);
+  TrackedObject found;
+  for (int i = 0; i < 4; ++i) found = bench.look_nearby(room(&place));
+  ASSERT_TRUE(found.found);
+  EXPECT_GT(overlap(found.box, place), 0.6);
+}
+
+TEST(Tracker, LooksAroundThePlaceWhereItWasLost) {
+  for (const Box& place : {moved(kFirst.x - 60, kFirst.y), moved(kFirst.x + 65, kFirst.y + 70)}) {
+    TrackParameters parameters;
+    Bench bench(parameters);
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(kFirst).found) << i;
+    for (int i = 0; i < 8; ++i) ASSERT_FALSE(bench.look_nearby(room(nullptr)).found) << i;
+    TrackedObject found;
+    for (int i = 0; i < 7 && !found.found; ++i) found = bench.look_nearby(room(&place));
+    ASSERT_TRUE(found.found) << place.x;
+    EXPECT_GT(overlap(found.box, place), 0.6) << place.x;
+  }
 }
 
 // Having left the image, it comes back nearer or farther.

@@ -19,7 +19,7 @@ struct PresenceParameters {
   double sharpness_weight = 4.57;
   double divergence_weight = -1.66;
   double separation_weight = 3.6;
-  double memory = 0.7;
+  double memory = 0.8;
   double max_log_odds = 3.0;
 
   template <class Self, class Visitor>

@@ -42,8 +42,10 @@ struct DoubtParameters {
   double min_sure_score = 0.8;
   double min_agreement = 0.62;
   int max_foreign_images = 5;
-  double min_reacquire_log_odds = 1.7;
-  double min_reacquire_agreement = 0.8;
+  double min_tentative_log_odds = -4.0;
+  int places_while_lost = 4;
+  double min_reacquire_log_odds = 2.0;
+  double min_reacquire_agreement = 0.7;
   double min_found_sharpness = 14.0;
   double min_found_score = 0.45;
   double min_found_agreement = 0.86;
@@ -62,12 +64,19 @@ struct DoubtParameters {
                  "another object.");
     visit.number("max_foreign_images", self.max_foreign_images, {1, 1000}, "",
                  "Tracking ends after this many consecutive images with another object in the box.");
+    visit.number(
+        "min_tentative_log_odds", self.min_tentative_log_odds, {-100.0, 100.0}, "",
+        "The log-odds of presence from which what may be the lost object is followed, without being reported.");
+    visit.number("places_while_lost", self.places_while_lost, {0, 40}, "",
+                 "The number of places that are examined in each image while the object is lost: those that the search "
+                 "found, then places around it, in turn.");
     visit.number("min_reacquire_log_odds", self.min_reacquire_log_odds, {-100.0, 100.0}, "",
                  "The log-odds of presence (color.track.presence) with which the object is found again elsewhere with "
                  "its last appearance.");
-    visit.number("min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
-                 "The agreement with the learned colour amounts, corrected for the light, that finding it again "
-                 "elsewhere requires.");
+    visit.number(
+        "min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
+        "The agreement with the learned or the recent colour amounts, corrected for the light, that finding it "
+        "again elsewhere requires.");
     visit.number("min_found_sharpness", self.min_found_sharpness, {0.0, 50.0}, "",
                  "The peak sharpness that a first detection requires.");
     visit.number("min_found_score", self.min_found_score, {0.0, 2.0}, "",

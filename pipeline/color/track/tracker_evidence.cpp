@@ -1,5 +1,6 @@
 // What speaks for a place being the object's: the measures behind Tracker::State.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "pipeline/color/track/relight.h"
@@ -19,6 +20,15 @@ constexpr double kGlanceScore = 0.75;
 constexpr double kGlanceSharpness = 0.5;
 constexpr double kGlanceAgreement = 0.65;
 
+/// Places around the object, in its sides.
+struct Offset {
+  int columns;
+  int rows;
+};
+constexpr std::array<Offset, 24> kAround{{{1, 0},  {-1, 0}, {0, 1}, {0, -1},  {1, 1}, {-1, -1}, {1, -1}, {-1, 1},
+                                          {2, 0},  {-2, 0}, {0, 2}, {0, -2},  {2, 1}, {-2, -1}, {1, -2}, {-1, 2},
+                                          {2, -1}, {-2, 1}, {1, 2}, {-1, -2}, {2, 2}, {-2, -2}, {2, -2}, {-2, 2}}};
+
 }  // namespace
 
 Place Tracker::State::look(const imaging::ReducedImage& reduced, const Box& at) {
@@ -36,9 +46,38 @@ Tint Tracker::State::tint(const Box& at) const {
   return tint;
 }
 
+double Tracker::State::recent_agreement(const Tint& seen) const {
+  return recent_amounts.agreement(ColorAmounts(relit(seen.view, inverse(light.gain()))));
+}
+
 PresenceMeasures Tracker::State::measures_of(const Place& place) const {
   const double score_ratio = mean_score > 0.0 ? place.local.score / mean_score : 0.0;  // a plain region has no score
   return {score_ratio, place.local.sharpness, place.divergence - mean_divergence, place.local.separation()};
+}
+
+/// What is lost may be in view and look otherwise than it did: a copy of what was known follows it and learns how it looks now, as long as
+/// anything speaks for it. That moves `box` and proves nothing: whether it is the object is asked of what was surely learned.
+void Tracker::State::follow_tentatively(const imaging::ReducedImage& reduced, WorkBudget& budget) {
+  if (!budget.grant()) return;
+  const LocalAnswer answer = tentative.look(pyramid, box, light.gain());
+  const Place place{answer, divergence.of(reduced, answer.box).divergence};
+  if (presence.log_odds(measures_of(place)) < parameters.doubt.min_tentative_log_odds) return;
+  box = with_centre_inside(answer.box, pyramid.width_px(), pyramid.height_px());
+  if (recent_agreement(tint(box)) >= parameters.doubt.min_agreement && budget.grant())
+    tentative.learn(pyramid, box, light.gain());
+}
+
+/// Where it may have gone while it was not seen: the places up to two sides away, one after the other, the nearest first.
+/// \return none if the place's centre is outside the image.
+std::optional<Box> Tracker::State::place_around(int turn) const {
+  const auto [columns, rows] = kAround[static_cast<std::size_t>(turn) % kAround.size()];
+  Box place = box;
+  place.x += columns * box.width;
+  place.y += rows * box.height;
+  const double x = place.x + 0.5 * place.width;
+  const double y = place.y + 0.5 * place.height;
+  if (x < 0.0 || y < 0.0 || x > pyramid.width_px() || y > pyramid.height_px()) return std::nullopt;
+  return place;
 }
 
 /// Elsewhere, or where it was lost but in another size, as it looked last. The window that fits best is fitted before it is judged, for the
@@ -60,13 +99,19 @@ bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const Searc
     const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
     any |= consider(look(reduced, centred_on(window, box.width, box.height)));
   }
+  const int around = lost ? parameters.doubt.places_while_lost - matches.count : 0;
+  const int turn = images_lost * parameters.doubt.places_while_lost;
+  for (int i = 0; i < around && budget.grant(); ++i) {
+    if (const auto near = place_around(turn + i)) any |= consider(look(reduced, *near));
+  }
   if (!any) return false;
   for (int round = 0; round < kRecognitionRounds && budget.grant(); ++round) {
     const Box fitted = grown(best.local.box, local.growth(pyramid, best.local.box), model, parameters.max_size_ratio);
     if (!consider(look(reduced, fitted))) break;
   }
   if (most < parameters.doubt.min_reacquire_log_odds) return false;
-  if (tint(best.local.box).agreement < parameters.doubt.min_reacquire_agreement) return false;
+  const Tint seen = tint(best.local.box);
+  if (std::max(seen.agreement, recent_agreement(seen)) < parameters.doubt.min_reacquire_agreement) return false;
   place = best;
   return true;
 }

@@ -45,7 +45,7 @@ TrackedObject Tracker::State::track_plain(const SearchResult& matches) const {
 
 /// The whole image is searched in any case. Where the object was, the local tracker says how it moved; when all that it measures speaks against
 /// the object's presence there, it is looked for at the search's best windows, as it looked last and as it was learned: a prior, not a
-/// cage. What was lost is still looked for where it was as well, and nothing is learned meanwhile.
+/// cage. What was lost is still looked for where it was, or where something went that may be it, and nothing is learned surely meanwhile.
 TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, const SearchResult& matches,
                                          WorkBudget& budget) {
   image_quantiles = channel_quantiles(view_image(pyramid));
@@ -53,6 +53,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   Place place;
   bool followed = false;
   if (located) {
+    if (lost) follow_tentatively(reduced, budget);
     place = look(reduced, box);
     presence.add(measures_of(place));
     // What is seen again where it was lost may be something of the same shape: its colours have to be the object's.
@@ -69,7 +70,8 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     }
     presence.confirm();
   }
-  if (lost || !followed) foreign_images = 0;
+  const bool continued = followed && !lost;
+  if (!continued) foreign_images = 0;
   located = true;
   lost = false;
   images_lost = 0;
@@ -85,7 +87,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     presence.deny();
     return lose();
   }
-  learn(place, amounts, followed);
+  learn(place, amounts, continued);
   ++images_since_sight;
   return answer(place, amounts);
 }
@@ -98,9 +100,9 @@ bool Tracker::State::is_foreign(const Place& place, const Tint& seen, const Colo
          parameters.doubt.min_agreement;
 }
 
-/// Where it was looked for in many places, the next image teaches the same and has the time for it.
-void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool followed) {
-  if (followed) local.learn(pyramid, box, light.gain());
+/// Where it was looked for in many places, or followed tentatively, the next image teaches the same and has the time for it.
+void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool continued) {
+  if (continued) local.learn(pyramid, box, light.gain());
   const double rate = images_since_sight < parameters.doubt.warm_up_images ? 0.3 : parameters.doubt.mean_rate;
   mean_score += rate * (place.local.score - mean_score);
   mean_divergence += rate * (place.divergence - mean_divergence);
@@ -110,6 +112,7 @@ void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool
 
 /// Nothing that was learned is forgotten: it may be found again where it was lost, or elsewhere, by what it looked like last or first.
 TrackedObject Tracker::State::lose() {
+  tentative = local;
   lost = true;
   foreign_images = 0;
   images_lost = 0;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "pipeline/color/search/box_divergence.h"
 #include "pipeline/color/track/color_agreement.h"
@@ -34,6 +35,7 @@ struct Tracker::State {
         divergence(m, p.search.divergence),
         pyramid(max_width_px, max_height_px),
         local(p.local),
+        tentative(p.local),
         light(p.light),
         illuminant(p.illuminant),
         confidence(p.confidence),
@@ -48,15 +50,18 @@ struct Tracker::State {
   TrackedObject track_full(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
   Place look(const imaging::ReducedImage& reduced, const Box& box);
   [[nodiscard]] Tint tint(const Box& at) const;
+  [[nodiscard]] double recent_agreement(const Tint& seen) const;
   /// Where it will come back, it may be nearer or farther: one size after the other, in different images.
   [[nodiscard]] double lost_scale() const {
     constexpr std::array kScales{1.0, 0.7, 1.4};
     return kScales[static_cast<std::size_t>(images_lost) % kScales.size()];
   }
   [[nodiscard]] bool is_foreign(const Place& place, const Tint& seen, const ColorAmounts& amounts) const;
-  void learn(const Place& place, const ColorAmounts& amounts, bool followed);
+  void learn(const Place& place, const ColorAmounts& amounts, bool continued);
   TrackedObject lose();
   [[nodiscard]] PresenceMeasures measures_of(const Place& place) const;
+  void follow_tentatively(const imaging::ReducedImage& reduced, WorkBudget& budget);
+  [[nodiscard]] std::optional<Box> place_around(int turn) const;
   bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   TrackedObject answer(const Place& place, const ColorAmounts& amounts);
@@ -66,6 +71,7 @@ struct Tracker::State {
   BoxDivergence divergence;
   imaging::Pyramid pyramid;
   LocalTracker local;
+  LocalTracker tentative;  ///< a copy of `local` from the loss on, which goes on learning what may be the object.
   LightFollower light;
   IlluminantFilter illuminant;
   ChannelQuantiles image_quantiles;  ///< of the whole image.
@@ -77,7 +83,7 @@ struct Tracker::State {
   Light learned_light;
 
   bool located = false;  ///< `box` is where the object was in the last image.
-  Box box;
+  Box box;               ///< where the object was last, or, while it is lost, what may be the object.
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
