@@ -14,7 +14,7 @@ namespace cgsr {
 
 namespace count_marks_detail {
 inline std::atomic<unsigned> images{0};
-inline thread_local bool open = false;
+alignas(64) inline thread_local bool open = false;  // aligned: see the linker in cmake/options.cmake
 }  // namespace count_marks_detail
 
 /// Starts counting for the calling thread. Not nested: a second begin before the end changes nothing.

@@ -11,7 +11,7 @@ namespace cgsr::hal::ffmpeg {
 namespace {
 
 // Codecs run on the calling thread here (thread_count = 1), so a complaint lands with the call that caused it.
-thread_local std::array<char, 256> complaint{};
+alignas(64) thread_local std::array<char, 256> complaint{};  // aligned: see the linker in cmake/options.cmake
 
 void remember(void*, int level, const char* format, std::va_list arguments) {
   if (level <= AV_LOG_ERROR) std::vsnprintf(complaint.data(), complaint.size(), format, arguments);

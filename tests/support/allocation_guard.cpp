@@ -24,7 +24,7 @@
 namespace cgsr::test {
 namespace {
 
-struct Counts {
+struct alignas(64) Counts {  // aligned: see the linker in cmake/options.cmake
   std::uint64_t allocations = 0;
   std::uint64_t frees = 0;
   int guards = 0;
