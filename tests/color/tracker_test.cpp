@@ -11,6 +11,7 @@
 #include "pipeline/color/search/exhaustive_search.h"
 #include "tests/color/scene.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/counted_budget.h"
 
 namespace cgsr::color {
 namespace {
@@ -98,6 +99,9 @@ class Bench {
   /// As in an image that was not searched.
   TrackedObject look_nearby(test::Painting painting) {
     UnlimitedBudget budget;
+    return look_nearby(std::move(painting), budget);
+  }
+  TrackedObject look_nearby(test::Painting painting, WorkBudget& budget) {
     const ImageView image = painting.photograph(1.5, ++seed_);
     return tracker_->track(image, reduce(image), {}, budget);
   }
@@ -222,6 +226,23 @@ TEST(Tracker, LooksAroundThePlaceWhereItWasLost) {
     for (int i = 0; i < 7 && !found.found; ++i) found = bench.look_nearby(room(&place));
     ASSERT_TRUE(found.found) << place.x;
     EXPECT_GT(overlap(found.box, place), 0.6) << place.x;
+  }
+}
+
+// With work for one of them in each image all places around have their turn, on either side.
+TEST(Tracker, LooksAtEveryPlaceAroundWithLittleWork) {
+  for (const Box& place : {moved(kFirst.x - 75, kFirst.y - 90), moved(kFirst.x + 85, kFirst.y - 20),
+                           moved(kFirst.x - 75, kFirst.y + 20)}) {
+    Bench bench;
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(kFirst).found) << i;
+    for (int i = 0; i < 8; ++i) ASSERT_FALSE(bench.look_nearby(room(nullptr)).found) << i;
+    TrackedObject found;
+    for (int i = 0; i < 25 && !found.found; ++i) {
+      CountedBudget budget(2);  // what may be it, and one place
+      found = bench.look_nearby(room(&place), budget);
+    }
+    ASSERT_TRUE(found.found) << place.x << ',' << place.y;
+    EXPECT_GT(overlap(found.box, place), 0.5) << place.x << ',' << place.y;
   }
 }
 
@@ -369,15 +390,10 @@ TEST(TrackerFault, AModelWithoutAPictureIsRefusedInFullMode) {
   EXPECT_TRUE(Tracker::create(model, plain, kWidth_px, kHeight_px));
 }
 
-class NoBudget final : public WorkBudget {
- public:
-  bool grant() override { return false; }
-};
-
 TEST(TrackerFault, WithoutABudgetItStillFollowsWhatItSaw) {
   Bench bench;
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(bench.see(kFirst).found);
-  NoBudget none;
+  CountedBudget none(0);
   for (int i = 1; i <= 5; ++i) {
     const Box place = moved(kFirst.x + 4 * i, kFirst.y);
     auto painting = room(&place);

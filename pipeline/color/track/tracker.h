@@ -69,7 +69,7 @@ struct DoubtParameters {
         "The log-odds of presence from which what may be the lost object is followed, without being reported.");
     visit.number("places_while_lost", self.places_while_lost, {0, 40}, "",
                  "The number of places that are examined in each image while the object is lost: those that the search "
-                 "found, then places around it, in turn.");
+                 "found, then the place of the loss and those around it, in turn.");
     visit.number("min_reacquire_log_odds", self.min_reacquire_log_odds, {-100.0, 100.0}, "",
                  "The log-odds of presence (color.track.presence) with which the object is found again elsewhere with "
                  "its last appearance.");

@@ -20,14 +20,15 @@ constexpr double kGlanceScore = 0.75;
 constexpr double kGlanceSharpness = 0.5;
 constexpr double kGlanceAgreement = 0.65;
 
-/// Places around the object, in its sides.
+/// Places around the one of the loss, in the object's sides: the nearest first.
 struct Offset {
   int columns;
   int rows;
 };
-constexpr std::array<Offset, 24> kAround{{{1, 0},  {-1, 0}, {0, 1}, {0, -1},  {1, 1}, {-1, -1}, {1, -1}, {-1, 1},
-                                          {2, 0},  {-2, 0}, {0, 2}, {0, -2},  {2, 1}, {-2, -1}, {1, -2}, {-1, 2},
-                                          {2, -1}, {-2, 1}, {1, 2}, {-1, -2}, {2, 2}, {-2, -2}, {2, -2}, {-2, 2}}};
+constexpr std::array<Offset, 25> kAround{{{0, 0},   {1, 0},   {-1, 0}, {0, 1},  {0, -1}, {1, 1},  {-1, -1},
+                                          {1, -1},  {-1, 1},  {2, 0},  {-2, 0}, {0, 2},  {0, -2}, {2, 1},
+                                          {-2, -1}, {1, -2},  {-1, 2}, {2, -1}, {-2, 1}, {1, 2},  {-1, -2},
+                                          {2, 2},   {-2, -2}, {2, -2}, {-2, 2}}};
 
 }  // namespace
 
@@ -67,11 +68,11 @@ void Tracker::State::follow_tentatively(const imaging::ReducedImage& reduced, Wo
     tentative.learn(pyramid, box, light.gain());
 }
 
-/// Where it may have gone while it was not seen: the places up to two sides away, one after the other, the nearest first.
+/// Where it may be while what is followed tentatively is something else: where it was lost, and up to two sides away, one place after the other.
 /// \return none if the place's centre is outside the image.
 std::optional<Box> Tracker::State::place_around(int turn) const {
   const auto [columns, rows] = kAround[static_cast<std::size_t>(turn) % kAround.size()];
-  Box place = box;
+  Box place = centred_on(lost_at, box.width, box.height);
   place.x += columns * box.width;
   place.y += rows * box.height;
   const double x = place.x + 0.5 * place.width;
@@ -100,9 +101,8 @@ bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const Searc
     any |= consider(look(reduced, centred_on(window, box.width, box.height)));
   }
   const int around = lost ? parameters.doubt.places_while_lost - matches.count : 0;
-  const int turn = images_lost * parameters.doubt.places_while_lost;
   for (int i = 0; i < around && budget.grant(); ++i) {
-    if (const auto near = place_around(turn + i)) any |= consider(look(reduced, *near));
+    if (const auto near = place_around(places_looked_at++)) any |= consider(look(reduced, *near));
   }
   if (!any) return false;
   for (int round = 0; round < kRecognitionRounds && budget.grant(); ++round) {

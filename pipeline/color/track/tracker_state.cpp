@@ -113,9 +113,11 @@ void Tracker::State::learn(const Place& place, const ColorAmounts& amounts, bool
 /// Nothing that was learned is forgotten: it may be found again where it was lost, or elsewhere, by what it looked like last or first.
 TrackedObject Tracker::State::lose() {
   tentative = local;
+  lost_at = box;
   lost = true;
   foreign_images = 0;
   images_lost = 0;
+  places_looked_at = 0;
   light.lose();
   confidence.reset();
   return {};

@@ -84,12 +84,14 @@ struct Tracker::State {
 
   bool located = false;  ///< `box` is where the object was in the last image.
   Box box;               ///< where the object was last, or, while it is lost, what may be the object.
+  Box lost_at;           ///< where it was last, when it was lost.
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  bool lost = false;       ///< it was here, and is not seen.
-  int images_lost = 0;     ///< in a row.
-  int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
+  bool lost = false;         ///< it was here, and is not seen.
+  int images_lost = 0;       ///< in a row.
+  int places_looked_at = 0;  ///< around it, since the loss.
+  int foreign_images = 0;    ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
 };
 
