@@ -11,7 +11,7 @@ Rgb rgb(double r, double g, double b) {
 }
 
 Outfit wears(ShirtKind kind, const Rgb& color, const Rgb& second, const Rgb& trousers) {
-  return {kind, color, second, trousers, -1};
+  return {kind, color, second, trousers, -1, -1};
 }
 
 // From light to dark skin.

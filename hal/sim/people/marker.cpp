@@ -20,8 +20,8 @@ Mesh marker_mesh(int id, double side_m) {
     for (int column = 0; column < kCells; ++column) {
       const bool margin = row == 0 || column == 0 || row == kCells - 1 || column == kCells - 1;
       const bool black = !margin && image.at<std::uint8_t>(row - 1, column - 1) == 0;
-      // Seen from the front, columns run to the right, which is -y of who wears it.
-      const float y = cell * (static_cast<float>(kCells) / 2 - static_cast<float>(column));
+      // Seen from the front, columns run to the right, which is to the left (+y) of who wears it.
+      const float y = cell * (static_cast<float>(column) + 1.0F - static_cast<float>(kCells) / 2);
       const float z = cell * (static_cast<float>(kCells) / 2 - static_cast<float>(row));
       const Eigen::Vector2f uv(black ? 1.0F : 0.0F, 0.0F);
       mesh.add_polygon({{0, y, z - cell}, {0, y - cell, z - cell}, {0, y - cell, z}, {0, y, z}}, {uv, uv, uv, uv});

@@ -1,6 +1,7 @@
 #include "hal/sim/people/person.h"
 
 #include <cstddef>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -57,6 +58,15 @@ class Tailor {
   std::string who_;
 };
 
+/// A marker on a sheet of paper, 0.17 m with its margin.
+void pin(Tailor& tailor, int id, const std::string& name, const Pose& on_torso, int outfit) {
+  Mesh sheet = marker_mesh(id, 0.17);
+  sheet.transform(on_torso);
+  const std::string white = name + " white", black = name + " black";
+  tailor.add(white, sheet_of(sheet, false), kTorsoJoint, tailor.cloth(white.c_str(), Rgb::Constant(0.85F)), outfit);
+  tailor.add(black, sheet_of(sheet, true), kTorsoJoint, tailor.cloth(black.c_str(), Rgb::Constant(0.02F)), outfit);
+}
+
 void dress(Tailor& tailor, const std::vector<BodyPart>& body, const Outfit& outfit, int index, double height_m) {
   const int shirt = tailor.shirt(outfit, false);
   const int sleeve = tailor.shirt(outfit, true);
@@ -66,15 +76,10 @@ void dress(Tailor& tailor, const std::vector<BodyPart>& body, const Outfit& outf
     if (part.cover == Cover::kSleeve) tailor.add(part.name, part.mesh, part.joint, sleeve, index);
     if (part.cover == Cover::kTrousers) tailor.add(part.name, part.mesh, part.joint, trousers, index);
   }
-  if (outfit.marker >= 0) {
-    const double k = height_m / 1.72;
-    Mesh sheet = marker_mesh(outfit.marker, 0.17);
-    sheet.transform(pose_at({0.135 * k, 0, 0.28 * k}));
-    tailor.add("marker white", sheet_of(sheet, false), kTorsoJoint, tailor.cloth("marker white", Rgb::Constant(0.85F)),
-               index);
-    tailor.add("marker black", sheet_of(sheet, true), kTorsoJoint, tailor.cloth("marker black", Rgb::Constant(0.02F)),
-               index);
-  }
+  const double k = height_m / 1.72;
+  if (outfit.marker >= 0) pin(tailor, outfit.marker, "marker", pose_at({0.135 * k, 0, 0.28 * k}), index);
+  if (outfit.back_marker >= 0)
+    pin(tailor, outfit.back_marker, "back marker", pose_at({-0.135 * k, 0, 0.28 * k}, std::numbers::pi), index);
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ struct Outfit {
   Rgb color{0.05F, 0.08F, 0.30F};
   Rgb second{0.8F, 0.8F, 0.8F};
   Rgb trousers{0.02F, 0.02F, 0.03F};
-  int marker = -1;  ///< ArUco 4x4_50 on the chest; -1: none.
+  int marker = -1;       ///< ArUco 4x4_50 on the chest; -1: none.
+  int back_marker = -1;  ///< the same on the back.
 };
 
 /// A person to be added to a scene.

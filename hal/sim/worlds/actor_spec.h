@@ -101,6 +101,7 @@ struct OutfitSpec {
   Triple second{0.9, 0.9, 0.9};
   Triple trousers{0.16, 0.17, 0.22};
   int marker = -1;
+  int back_marker = -1;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -109,6 +110,7 @@ struct OutfitSpec {
     visit.numbers("second", self.second, kShare, "sRGB", "its stripes or its lower half");
     visit.numbers("trousers", self.trousers, kShare, "sRGB", "of the trousers");
     visit.number("marker", self.marker, {-1, 49}, "", "ArUco marker 4x4_50 on the chest; -1: none");
+    visit.number("back_marker", self.back_marker, {-1, 49}, "", "the same on the back");
   }
 };
 

@@ -183,8 +183,8 @@ void WorldBuilder::add_object(const ObjectSpec& spec) {
 void WorldBuilder::add_person(const PersonSpec& spec) {
   Person person{spec.name, spec.identity, spec.height_m, {}};
   for (const OutfitSpec& outfit : spec.outfit) {
-    person.outfits.push_back(
-        {outfit.shirt, from_srgb(outfit.color), from_srgb(outfit.second), from_srgb(outfit.trousers), outfit.marker});
+    person.outfits.push_back({outfit.shirt, from_srgb(outfit.color), from_srgb(outfit.second),
+                              from_srgb(outfit.trousers), outfit.marker, outfit.back_marker});
   }
   const auto outfits = static_cast<int>(std::max<std::size_t>(1, person.outfits.size()));
   for (const PresenceSpec& key : spec.presence) {
