@@ -28,7 +28,7 @@ struct IdentifiedPeople : person::PeopleInView {
     const Box& box = self.person.box;
     visit.choice("person", state_of(self), PersonState::kUnsure, "who is identified");
     visit.integer("person_number", self.person.person, "", "the number in the identities file; 0 for a stranger");
-    visit.choice("person_by", self.person.source, person::PersonSource::kShirt,
+    visit.choice("person_by", self.person.source, person::PersonSource::kMarker,
                  "the characteristic that identified the person");
     visit.number("person_confidence", when(somebody, self.person.confidence), {3}, "", "how likely this is right");
     visit.number("person_x_px", when(somebody, box.x), {1}, "px", "left edge of what identified the person");
@@ -41,18 +41,18 @@ struct IdentifiedPeople : person::PeopleInView {
   static PersonState state_of(const person::PeopleInView& people);
 };
 
-/// Who is in view (chapter 6): faces are followed and named, the face of the person of interest and the shirt below it teach each other (Alg. 6.1).
+/// Who is in view (chapter 6): faces are followed and named, face or marker of the person of interest and the shirt below it teach each other (Alg. 6.1).
 ///
 /// Threads: one. OpenCV's cascade allocates.
 class IdentifyStage {
  public:
   using Output = IdentifiedPeople;
   static constexpr std::string_view kName = "identify";
-  static constexpr std::string_view kMeaning = "Who is in view, by face and shirt (chapter 6).";
+  static constexpr std::string_view kMeaning = "Who is in view, by face, marker and shirt (chapter 6).";
   static constexpr runtime::StageParameters kRow{1, 0, 100, 2, runtime::OnOverrun::kSkip};
 
   /// As person::Identifier's constructor.
-  IdentifyStage(person::FaceDetector detector, std::unique_ptr<person::FaceRecognizer> recognizer,
+  IdentifyStage(std::optional<person::FaceDetector> detector, std::unique_ptr<person::FaceRecognizer> recognizer,
                 const person::IdentifierParameters& parameters)
       : identifier_(std::move(detector), std::move(recognizer), parameters) {}
 

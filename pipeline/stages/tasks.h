@@ -27,7 +27,7 @@ class FollowTask final : public Task {
   geometry::Camera camera_;
 };
 
-/// Follows a person at a distance (6.4): by the face while it is seen, else by the shirt. A stranger is not followed, whatever he wears.
+/// Follows a person at a distance (6.4): by face or marker while one is seen, else by the shirt. A stranger is not followed, whatever he wears.
 class FollowPersonTask final : public Task {
  public:
   /// \param person  the number in the identities file; 0: whoever is enrolled and comes first.

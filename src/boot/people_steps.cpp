@@ -13,7 +13,7 @@ namespace cgsr::boot {
 /// Who is known. A file that is not there is an error: a robot that is to identify people does not begin without any.
 Result<void> load_people(RobotState& state) {
   const config::Person& config = state.setup.config.person;
-  if (!config.enabled()) return {};
+  if (!config.knows_faces()) return {};
   auto identities = app::load_identities(config.identities);
   if (!identities) return tl::unexpected(identities.error());
   if (identities->people.empty()) {
@@ -29,17 +29,22 @@ Result<void> load_people(RobotState& state) {
   return {};
 }
 
-/// The stage that identifies people. Live, faces are named on a thread of their own; in lock-step so many images later.
+/// The stage that identifies people, by a marker alone where no faces are known. Live, faces are named on a thread of their own; in lock-step so many images
+/// later.
 Result<void> make_people(RobotState& state) {
-  if (!state.vision.people) return {};
-  const person::IdentifierParameters& parameters = state.setup.config.person.identifier;
+  const config::Person& config = state.setup.config.person;
+  if (!config.enabled()) return {};
+  const person::IdentifierParameters& parameters = config.identifier;
   std::unique_ptr<person::FaceRecognizer> recognizer;
-  if (state.setup.live()) {
+  if (!state.vision.people) {
+    state.report.notes.push_back(
+        fmt::format("people: number {} by marker {}", parameters.marker.number, parameters.marker.id));
+  } else if (state.setup.live()) {
     recognizer = std::make_unique<tasks::LinkedRecognizer>(state.links);
   } else {
     recognizer = std::make_unique<person::SteppedRecognizer>(*state.vision.people, parameters.answer_after_images);
   }
-  state.vision.parts.make<stages::IdentifyStage>(std::move(*state.vision.face_detector), std::move(recognizer),
+  state.vision.parts.make<stages::IdentifyStage>(std::move(state.vision.face_detector), std::move(recognizer),
                                                  parameters);
   return {};
 }

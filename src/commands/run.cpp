@@ -37,7 +37,7 @@ std::string ended_by(const boot::Robot& robot) {
 /// The person task instead of the one that the file names. A name is looked up here: further on there are numbers alone.
 Result<void> follow(const FollowedPerson& person, const std::string& robot_file, config::Robot& config) {
   if (!person.identities.empty()) config.person.identities = person.identities;
-  if (!config.person.enabled()) {
+  if (!config.person.enabled() || !(person.name.empty() || config.person.knows_faces())) {
     return fail(fmt::format("{}: person.identities is empty and no --identities is given: who is known?", robot_file));
   }
   config.task.kind = config::TaskKind::kPerson;

@@ -12,13 +12,15 @@ struct Person {
   std::string cascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
   person::IdentifierParameters identifier;
 
-  [[nodiscard]] bool enabled() const { return !identities.empty(); }
+  [[nodiscard]] bool enabled() const { return knows_faces() || identifier.marker.enabled; }
+  [[nodiscard]] bool knows_faces() const { return !identities.empty(); }
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
-    visit.path(
-        "identities", self.identities,
-        "The people who are known: a file written by cgsr people enroll. Without one the robot identifies nobody.");
+    visit.path("identities", self.identities,
+               "The people who are known: a file written by cgsr people enroll. Without one the robot identifies "
+               "nobody, unless "
+               "by a marker.");
     visit.path("cascade", self.cascade, "The cascade that finds frontal faces, of Debian's package opencv-data.");
     person::IdentifierParameters::describe(self.identifier, visit);
   }

@@ -144,7 +144,10 @@ struct Robot {
     const bool live = run.pace == Pace::kLive;
     if (about_people() && !person.enabled()) {
       return "task.kind = \"person\" and \"line\" need person.identities: the file in which cgsr people enroll keeps "
-             "who is known";
+             "who is known; \"person\" can do with person.marker.enabled instead";
+    }
+    if (task.kind == TaskKind::kLine && !person.knows_faces()) {
+      return "task.kind = \"line\" needs person.identities: it tells people by their faces, not by a marker";
     }
     if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
       return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "

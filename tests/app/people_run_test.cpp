@@ -169,6 +169,36 @@ TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
   EXPECT_THAT(nobody.errors, HasSubstr("there is no 'Emil'"));
 }
 
+// 6.4.1.1 with nobody enrolled: somebody with a marker on the back walks away and is followed; then turned aside, where the shirt alone is seen. Somebody
+// else in the same shirt stands farther away all the time.
+TEST_F(RunWithPeople, FollowsAMarkerAndThenTheShirtThatItTaught) {
+  write_text(scratch_ / "scenario.toml",
+             "world = \"" CGSR_SOURCE_DIR
+             "/config/worlds/people-marker.toml\"\nrobot = \"robot\"\nends_at_s = 7.0\n"
+             "[[line]]\nname = \"arming\"\ninput = true\n"
+             "[[line_event]]\nwhat = \"pressed\"\nline = \"arming\"\nfrom_s = 0.5\n"
+             "[[actor]]\nname = \"leader\"\n[actor.walk]\nstop = [\n"
+             "{ at_m = [2.4, 0.0, 0.0], wait_s = 2.0, heading_deg = 0.0 },\n"
+             "{ at_m = [3.6, 0.0, 0.0], speed_mps = 0.5, wait_s = 9.0, heading_deg = 90.0 }]\n");
+  write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-people-marker.toml",
+                                               {{"sim.scenario", "\"scenario.toml\""}, {"sim.cache", "false"}}));
+  const auto run = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--csv", scratch_ / "run.csv"});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  int by_marker = 0, by_shirt = 0, driving = 0, somebody_else = 0;
+  for (const Row& row : read_rows(read_text(scratch_ / "run.csv"))) {
+    const double time_s = std::stod(row.at("stamp_s"));
+    const std::string& by = row.at("person_by");
+    if (!row.at("person_number").empty() && row.at("person_number") != "1") ++somebody_else;
+    if (time_s > 1.0 && time_s < 3.0 && by == "marker") ++by_marker;
+    if (time_s > 5.5 && by == "shirt") ++by_shirt;
+    if (time_s > 3.0 && std::stod(row.at("goal_mps")) > 0.1) ++driving;
+  }
+  EXPECT_GE(by_marker, 54) << "of 60 images from behind";
+  EXPECT_GE(by_shirt, 40) << "of 45 images from aside";
+  EXPECT_GE(driving, 60) << "of 120 images";
+  EXPECT_EQ(somebody_else, 0);
+}
+
 TEST_F(RunWithPeople, RefusesARobotThatKnowsNobody) {
   const auto run = run_cgsr({"check", "--config", robot()});
   EXPECT_NE(run.exit_code, 0);

@@ -137,6 +137,37 @@ TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
   EXPECT_TRUE(tracker.shirts().knows(1));
 }
 
+// Two primaries that disagree: the surer one decides, the marker where they are equal.
+TEST(PersonTracker, BelievesTheSurerOfMarkerAndFace) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  const auto look = [&](double marker_confidence, const FaceSighting& face) {
+    while (!tracker.face_is_due()) tracker.update({picture.view()});
+    return tracker.update(
+        {picture.view(), face, std::nullopt, MarkerSighting{{150, 110, 20, 20}, kFaceBox, 1, marker_confidence}});
+  };
+  const auto by_marker = look(0.98, face_of(2, 0.9));
+  EXPECT_EQ(by_marker.person, 1);
+  EXPECT_EQ(by_marker.source, PersonSource::kMarker);
+  EXPECT_EQ(by_marker.box, (Box{150, 110, 20, 20}));
+  EXPECT_EQ(by_marker.face_px, kFaceBox.width);
+  EXPECT_EQ(look(0.8, face_of(2, 0.9)).person, 2);
+  EXPECT_EQ(look(0.9, face_of(1, 0.9)).source, PersonSource::kMarker);
+}
+
+// Of a marker that is seen from aside the shirt is not where its box says, nor as wide.
+TEST(PersonTracker, LearnsAShirtUnderAMarkerThatFacesTheCameraAlone) {
+  const Picture picture = standing(kRed);
+  for (const double width : {8.0, 20.0}) {
+    PersonTracker tracker;
+    const MarkerSighting marker{{150, 110, width, 20}, kFaceBox, 1, 0.95};
+    for (int image = 0; image < 20; ++image)
+      EXPECT_EQ(tracker.update({picture.view(), std::nullopt, std::nullopt, marker}).person, 1);
+    EXPECT_EQ(tracker.shirts().knows(1), width == 20.0);
+  }
+}
+
 // 6.3.1: a shirt as large as the wall is none.
 // Two known people side by side: the shirt of the person of interest counts, not the larger one.
 TEST(PersonTracker, KeepsToTheShirtOfThePersonOfInterestBesideALargerOne) {

@@ -7,21 +7,34 @@
 
 namespace cgsr::person {
 
-Identifier::Identifier(FaceDetector detector, std::unique_ptr<FaceRecognizer> recognizer,
+Identifier::Identifier(std::optional<FaceDetector> detector, std::unique_ptr<FaceRecognizer> recognizer,
                        const IdentifierParameters& parameters)
-    : faces_(std::move(detector), parameters.faces), recognizer_(std::move(recognizer)), tracker_(parameters.tracker) {}
+    : recognizer_(std::move(recognizer)), tracker_(parameters.tracker) {
+  if (detector) faces_.emplace(std::move(*detector), parameters.faces);
+  if (parameters.marker.enabled) markers_.emplace(parameters.marker);
+}
+
+void Identifier::look_for_faces(const ImageView& image, WorkBudget& budget) {
+  if (!faces_) return;
+  if (tracker_.face_is_due()) {
+    faces_->look(image, budget, expected_face());
+  } else {
+    faces_->pass(image, budget);
+  }
+  exchange_with_recognizer(image);
+}
 
 void Identifier::exchange_with_recognizer(const ImageView& image) {
   if (const auto answer = recognizer_->answer()) {
-    faces_.hear(*answer);
+    faces_->hear(*answer);
     asking_ = false;
   }
   if (asking_) return;
-  auto question = faces_.question(image);
+  auto question = faces_->question(image);
   if (!question) return;
   const std::uint32_t face = question->face;
   if (!recognizer_->ask(std::move(*question))) return;
-  faces_.asked(face);
+  faces_->asked(face);
   asking_ = true;
 }
 
@@ -42,16 +55,31 @@ bool Identifier::is_beside(const FaceTrack& face, std::optional<Label> asked) co
 // followed and not seen in this image, the others are other people's and say nothing of him.
 std::optional<FaceSighting> Identifier::face_of(std::optional<Label> asked) const {
   const std::optional<Label> interest = asked ? asked : interest_;
+  if (!faces_) return std::nullopt;
   const FaceTrack* chosen = nullptr;
   const auto rank = [&](const FaceTrack& track) {
     return std::tuple(interest && track.match->label == interest, track.match->label.has_value(), track.box.area());
   };
-  for (const FaceTrack& track : faces_.tracks()) {
+  for (const FaceTrack& track : faces_->tracks()) {
     if (!track.match || is_beside(track, asked)) continue;
     if (chosen == nullptr || rank(track) > rank(*chosen)) chosen = &track;
   }
   if (chosen == nullptr || !chosen->seen) return std::nullopt;
   return FaceSighting{chosen->box, *chosen->match};
+}
+
+// The marker of the person; somebody else's only where it is on the shirt that is taken for his, or no shirt is: beside it, it says nothing of him.
+std::optional<MarkerSighting> Identifier::marker_of() const {
+  if (!markers_) return std::nullopt;
+  const auto marker = markers_->sighting();
+  const Box& shirt = tracker_.shirts().box();
+  if (!marker || marker->person || shirt.empty()) return marker;
+  const double x = marker->box.x + marker->box.width / 2, y = marker->box.y + marker->box.height / 2;
+  const double x_margin = marker->box.width,
+               y_margin = marker->box.height;  // where the shirt's blob ends at the marker
+  const bool on_it = x >= shirt.x - x_margin && x <= shirt.x + shirt.width + x_margin && y >= shirt.y - y_margin &&
+                     y <= shirt.y + shirt.height + y_margin;
+  return on_it ? marker : std::nullopt;
 }
 
 // Whoever was identified is of interest until he has not been for some images: one or two without him are no reason to turn to somebody else (6.2.2, the
@@ -63,7 +91,7 @@ void Identifier::remember(const PersonSighting& now, std::optional<Label> asked)
   images_without_ = stays ? 0 : images_without_ + 1;
   if (asked) {
     interest_ = asked;
-  } else if (known && (!interest_ || now.source == PersonSource::kFace)) {
+  } else if (known && (!interest_ || now.source != PersonSource::kShirt)) {
     interest_ = now.person;
     images_without_ = 0;
   } else if (images_without_ >= kImagesToForget) {
@@ -72,8 +100,9 @@ void Identifier::remember(const PersonSighting& now, std::optional<Label> asked)
 }
 
 // Who is known by his shirt alone may be somebody else: his face is looked for first.
-std::optional<Box> Identifier::face_above_shirt() const {
+std::optional<Box> Identifier::expected_face() const {
   constexpr double kAbove = 1.2;  // from the face's upper edge to the shirt's, in widths of the face
+  if (last_.source == PersonSource::kMarker) return last_marker_face_;
   if (last_.source != PersonSource::kShirt || last_.face_px <= 0.0) return std::nullopt;
   const double face_px = last_.face_px;
   const double middle = last_.box.x + last_.box.width / 2;
@@ -81,19 +110,19 @@ std::optional<Box> Identifier::face_above_shirt() const {
 }
 
 PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> asked, WorkBudget& budget) {
-  if (tracker_.face_is_due()) {
-    faces_.look(image, budget, face_above_shirt());
-  } else {
-    faces_.pass(image, budget);
-  }
-  exchange_with_recognizer(image);
+  if (markers_) markers_->look(image, budget);
+  look_for_faces(image, budget);
   // How the region was lit in which the person was last is how it is lit now.
   const ImageContext context = last_.box.empty() ? ImageContext{} : context_of(region_colors(image, last_.box));
   PeopleInView people;
-  people.person = tracker_.update({image, face_of(asked), asked ? asked : interest_}, context);
+  const auto marker = marker_of();
+  people.person = tracker_.update({image, face_of(asked), asked ? asked : interest_, marker}, context);
   last_ = people.person;
+  last_marker_face_ = marker ? std::optional(marker->face) : std::nullopt;
   remember(last_, asked);
-  for (const FaceTrack& track : faces_.tracks()) {
+  if (last_.person != kStranger) people.expected_face = expected_face();
+  if (!faces_) return people;
+  for (const FaceTrack& track : faces_->tracks()) {
     if (track.missed > 0) continue;
     SeenFace& face = people.faces[people.face_count++];
     face = {track.number, track.box, track.match.has_value(), std::nullopt, 0.0};

@@ -21,6 +21,14 @@ class FaceClassifier final : public Classifier<PersonImage> {
   void train(Label, std::optional<Label>) override {}
 };
 
+/// The other primary characteristic: names the person whose marker was read in this image, or a stranger (6.4.1.1).
+class MarkerClassifier final : public Classifier<PersonImage> {
+ public:
+  std::optional<Classification> classify(const PersonImage& input) override;
+  /// There is nothing to be trained: a marker's code is given.
+  void train(Label, std::optional<Label>) override {}
+};
+
 struct PersonTrackerParameters {
   ShirtParameters shirt{};
   ContextParameters context{};
@@ -36,7 +44,7 @@ struct PersonTrackerParameters {
 };
 
 /// By which characteristic somebody was identified.
-enum class PersonSource : std::uint8_t { kNone, kFace, kShirt };
+enum class PersonSource : std::uint8_t { kNone, kFace, kShirt, kMarker };
 std::string_view to_string(PersonSource source);
 
 /// Who is in the image.
@@ -45,11 +53,11 @@ struct PersonSighting {
   PersonSource source = PersonSource::kNone;
   double confidence = 0.0;
   Box box;               ///< of what identified him, in pixels of the image.
-  double face_px = 0.0;  ///< width of the face at the person's distance, seen or by the shirt; 0: not known.
+  double face_px = 0.0;  ///< width of the face at the person's distance, seen, or by shirt or marker; 0: not known.
 };
 
-/// One person from image to image by face and shirt (6.2): Alg. 6.1 with the face as primary and the shirt as secondary characteristic, and the
-/// scheduling of 6.2.3. A face without its shirt relearns the shirt (6.2.4); a stranger's face overrides a shirt and teaches it nothing.
+/// One person from image to image by face or marker and shirt (6.2): Alg. 6.1 with marker and face as primary and the shirt as secondary characteristic, and
+/// the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a stranger's overrides a shirt and teaches it nothing.
 ///
 /// Threads: one.
 class PersonTracker {
@@ -69,11 +77,12 @@ class PersonTracker {
   void measure(const PersonImage& input, PersonSighting& sighting);
 
   PersonTrackerParameters parameters_;
+  MarkerClassifier markers_;
   FaceClassifier faces_;
   ShirtClassifier shirts_;
   FeedbackClassifier<PersonImage> feedback_;
-  int since_face_ = 0;           // images since one was looked for
-  double face_px_ = 0.0;         // width of the last face that identified the person
+  int since_face_ = 0;    // images since one was looked for
+  double face_px_ = 0.0;  // width of the last face that identified the person, or of what would be it by the marker
   double shirt_per_face_ = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
 };
 

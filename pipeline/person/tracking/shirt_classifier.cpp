@@ -8,7 +8,30 @@ namespace {
 
 constexpr int kFactor = 2;  // shirts are sought at 320x240 (6.2.2)
 
+// A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
+bool is_facing(const MarkerSighting& marker) {
+  constexpr double kMinWidth = 0.7;  // of its height: turned by less than 45 degrees
+  return marker.box.width >= kMinWidth * marker.box.height;
+}
+
+// Colours that are found beside the marker, or in a part of the shirt alone, are no longer those of the shirt (relative position and size may issue a
+// re-training, 6.3.1).
+bool lies_under(const Box& shirt, const MarkerSighting& marker) {
+  constexpr double kMinShare = 0.5;  // of where it would be sampled
+  const Box expected = sampling_regions(marker).shirt;
+  return intersection(shirt, expected).area() >= kMinShare * expected.area();
+}
+
 }  // namespace
+
+SamplingRegions sampling_regions(const MarkerSighting& marker) {
+  constexpr double kMargin = 0.3;  // below the black square, in sides of it: a white cell and some more
+  constexpr double kHeight = 0.8;  // in widths of the face: the shirt does not go on much farther
+  SamplingRegions regions = sampling_regions(marker.face);
+  regions.shirt = {marker.face.x, marker.box.y + (1.0 + kMargin) * marker.box.height, marker.face.width,
+                   kHeight * marker.face.width};
+  return regions;
+}
 
 ShirtClassifier::ShirtClassifier(const ShirtParameters& parameters)
     : parameters_(parameters),
@@ -47,29 +70,43 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
     box_ = box;
   }
   if (largest == nullptr) return std::nullopt;
-  return Classification{order[largest->label - std::size_t{1}], parameters_.confidence};
+  const Label person = order[largest->label - std::size_t{1}];
+  const auto& marker = input.marker;
+  if (marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) return std::nullopt;
+  return Classification{person, parameters_.confidence};
 }
 
-void ShirtClassifier::learn(const PersonImage& input, const FaceSighting& face) {
-  const SamplingRegions regions = sampling_regions(face.box);
+// The person's marker before a face; of two strangers either will do.
+std::optional<ShirtClassifier::Teacher> ShirtClassifier::teacher_of(const PersonImage& input) {
+  const auto& [image, face, interest, marker] = input;
+  if (marker && is_facing(*marker) && (marker->person || !face))
+    return Teacher{marker->person, marker->face, sampling_regions(*marker)};
+  if (face) return Teacher{face->match.label, face->box, sampling_regions(face->box)};
+  return std::nullopt;
+}
+
+void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
+  const SamplingRegions& regions = teacher.regions;
   auto background = region_colors(input.image, regions.background[0]);
   const auto right = region_colors(input.image, regions.background[1]);
   background.insert(background.end(), right.begin(), right.end());
-  colors_.learn(*face.match.label, region_colors(input.image, regions.shirt), background);
+  colors_.learn(*teacher.person, region_colors(input.image, regions.shirt), background);
   map_is_due_ = true;
 }
 
 void ShirtClassifier::train(Label label, std::optional<Label>) {
-  if (!last_.face || last_.face->match.label != label || !colors_.knows(label)) return;
-  learn(last_, *last_.face);
+  const auto teacher = teacher_of(last_);
+  if (teacher && teacher->person == label && colors_.knows(label)) learn(last_, *teacher);
 }
 
-void ShirtClassifier::observe_face(const PersonImage& input, const FaceSighting& face) {
-  seen_images_ = face.match.label && face.match.label == seen_ ? seen_images_ + 1 : 1;
-  seen_ = face.match.label;
+void ShirtClassifier::observe(const PersonImage& input) {
+  const auto teacher = teacher_of(input);
+  if (!teacher) return;
+  seen_images_ = teacher->person && teacher->person == seen_ ? seen_images_ + 1 : 1;
+  seen_ = teacher->person;
   if (!seen_) return;
-  last_face_ = face.box;
-  if (!colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn) learn(input, face);
+  last_face_ = teacher->face;
+  if (!colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn) learn(input, *teacher);
 }
 
 void ShirtClassifier::forget(Label person) {

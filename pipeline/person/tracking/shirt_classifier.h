@@ -7,6 +7,7 @@
 #include "pipeline/person/colors/blobs.h"
 #include "pipeline/person/colors/person_colors.h"
 #include "pipeline/person/face/face_gallery.h"
+#include "pipeline/person/marker/marker_tracks.h"
 #include "platform/box.h"
 #include "platform/image_view.h"
 #include "platform/parameters.h"
@@ -25,7 +26,12 @@ struct PersonImage {
   std::optional<FaceSighting> face = std::nullopt;
   std::optional<Label> interest =
       std::nullopt;  ///< whose shirt counts where several are in view; nothing: the largest.
+  std::optional<MarkerSighting> marker = std::nullopt;  ///< that was read in this image.
 };
+
+/// Where colours are sampled around a marker on a shirt: below its white margin, nearly as large as a face; the background beside the face as for a face
+/// (Fig. 6.3), where neither shirt nor arms are.
+SamplingRegions sampling_regions(const MarkerSighting& marker);
 
 struct ShirtParameters {
   PersonColorParameters colors{};
@@ -61,11 +67,12 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   explicit ShirtClassifier(const ShirtParameters& parameters = {});
 
   std::optional<Classification> classify(const PersonImage& input) override;
-  /// Relearns the shirt below the face of the same input (6.2.4); without a face, or for a stranger, nothing is learned.
+  /// Relearns the shirt below the face or under the marker of the same input (6.2.4); without either, or for a stranger, nothing is learned.
   void train(Label label, std::optional<Label> mistaken_for) override;
 
-  /// Counts the images in which a face is recognised, and learns the shirt below it after so many in a row.
-  void observe_face(const PersonImage& input, const FaceSighting& face);
+  /// Counts the images in which the same person's marker or face is recognised, and learns the shirt under it after so many in a row. A marker that is
+  /// the person's comes before a face.
+  void observe(const PersonImage& input);
   void forget(Label person);
 
   /// \return the shirt that was found last.
@@ -74,7 +81,14 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] bool knows(Label person) const { return colors_.knows(person); }
 
  private:
-  void learn(const PersonImage& input, const FaceSighting& face);
+  /// Who says whose a shirt is, and where it is then.
+  struct Teacher {
+    std::optional<Label> person;  // nothing: a stranger
+    Box face;                     // seen, or where it would be
+    SamplingRegions regions;
+  };
+  static std::optional<Teacher> teacher_of(const PersonImage& input);
+  void learn(const PersonImage& input, const Teacher& teacher);
   [[nodiscard]] bool is_plausible(const Box& shirt, double area_px2) const;
 
   ShirtParameters parameters_;
@@ -84,7 +98,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   imaging::ReducedImage reduced_;
   BlobFinder blobs_;
   PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
-  std::optional<Box> last_face_;  // of a recognised person
+  std::optional<Box> last_face_;  // of a recognised person, or where it would be by the marker
   std::optional<Label> seen_;     // in the images before this one
   int seen_images_ = 0;
   Box box_;
