@@ -1,6 +1,7 @@
 #include "pipeline/person/context.h"
 
 #include <algorithm>
+#include <array>
 
 namespace cgsr::person {
 
@@ -25,6 +26,22 @@ ImageContext context_of(std::span<const imaging::Rgb> colors) {
   }
   const auto count = static_cast<double>(colors.size());
   return {static_cast<double>(dark) / count, static_cast<double>(saturated) / count, 0.0};
+}
+
+ImageContext context_of(const ImageView& image, const Box& region) {
+  constexpr int kSide = 16;
+  const Box part = intersection(region, {0, 0, double(image.width_px), double(image.height_px)});
+  if (image.empty() || image.format != PixelFormat::kYuyv || part.empty()) return {};
+  std::array<imaging::Rgb, std::size_t{kSide} * kSide> colors{};
+  for (int i = 0; i < kSide; ++i) {
+    const auto y = std::min(image.height_px - 1, static_cast<int>(part.y + (i + 0.5) * part.height / kSide));
+    for (int j = 0; j < kSide; ++j) {
+      const auto x = std::min(image.width_px - 1, static_cast<int>(part.x + (j + 0.5) * part.width / kSide));
+      const std::uint8_t* pair = image.row(y) + std::ptrdiff_t{4} * (x / 2);  // Y0 U Y1 V
+      colors[static_cast<std::size_t>(i * kSide + j)] = imaging::rgb_of_yuv(pair[x % 2 * 2], pair[1], pair[3]);
+    }
+  }
+  return context_of(colors);
 }
 
 double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters) {

@@ -4,6 +4,8 @@
 
 #include "pipeline/imaging/color_code.h"
 #include "pipeline/person/classifier.h"
+#include "platform/box.h"
+#include "platform/image_view.h"
 #include "platform/parameters.h"
 
 namespace cgsr::person {
@@ -43,6 +45,11 @@ struct ContextParameters {
 
 /// \return how a region was taken, by its colours (region_colors()). How blurred it is, colours do not say: 0.
 ImageContext context_of(std::span<const imaging::Rgb> colors);
+
+/// The same of a region by 16 x 16 pixels that are spread over it; nothing is allocated.
+/// \param image  YUYV.  \param region  in its pixels; the part within the image counts.
+/// \return an undisturbed context where the region is outside, or for another pixel format.
+ImageContext context_of(const ImageView& image, const Box& region);
 
 /// \return the factor in [0, 1] by which a classifier of this kind is to be believed less: the product of 1 - share * loss over the disturbances.
 double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters = {});

@@ -5,6 +5,9 @@
 #include <numbers>
 #include <span>
 
+#include "pipeline/person/context.h"
+#include "pipeline/person/face/face_detector.h"
+
 namespace cgsr::stages {
 namespace {
 
@@ -15,6 +18,11 @@ behavior::FollowParameters by_faces(behavior::FollowParameters follow) {
 
 behavior::LearnedSize face_at_a_metre(double face_width_m, double fx_px) {
   return {face_width_m * fx_px, face_width_m * fx_px};
+}
+
+bool is_mostly_within(const Box& box, const ImageView& image) {
+  const Box whole{0, 0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
+  return intersection(box, whole).area() > 0.5 * box.area();
 }
 
 behavior::PlanarPose pose_to_drive_by(const runtime::Aged<PoseEstimate>& pose) {
@@ -59,10 +67,12 @@ Decision FollowTask::decide(const FrameResult& frame, const ImageView& image, Du
 
 FollowPersonTask::FollowPersonTask(const behavior::FollowPersonParameters& person,
                                    const behavior::FollowParameters& follow, const behavior::DriveLimits& limits,
-                                   const geometry::Camera& camera)
+                                   const geometry::Camera& camera, const behavior::FillLightParameters& light)
     : person_(person.number),
       follow_(by_faces(follow), face_at_a_metre(person.face_width_m, camera.fx_px), limits),
-      camera_(camera) {}
+      camera_(camera) {
+  if (light.enabled) light_.emplace(light);
+}
 
 Requests FollowPersonTask::first_requests() const {
   Requests requests;
@@ -76,6 +86,28 @@ behavior::Sighting FollowPersonTask::sighting_of(const person::PersonSighting& w
   const double y = who.box.y + who.box.height / 2;
   const Box face{x - who.face_px / 2, y - who.face_px / 2, who.face_px, who.face_px};
   return {true, face, {}, image.width_px, image.height_px, camera_.fx_px, camera_.cx_px};
+}
+
+// A face of plausible size is one that lies at its place; one that identifies the person is his wherever it is.
+void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed,
+                                      Decision& decision) {
+  if (!light_) return;
+  behavior::FaceEvidence evidence;
+  if (people != nullptr) {
+    evidence.seen = people->person.source == person::PersonSource::kFace;
+    if (const auto& face = people->expected_face) {
+      evidence.expected = is_mostly_within(*face, image);
+      evidence.dark = person::context_of(image, *face).dark;
+      for (const person::SeenFace& seen : people->seen_faces())
+        evidence.seen = evidence.seen || person::same_face(seen.box, *face);
+    }
+  }
+  const behavior::FillLightDecision light = light_->decide(evidence, elapsed);
+  decision.requests.lamps[static_cast<std::size_t>(LampLine::kFillLight)] = light.on;
+  if (!light.changed) return;
+  Event event{"fill light", light.on ? "on" : "off", light.reason};
+  if (evidence.expected) event.numbers[event.number_count++] = {"dark", evidence.dark, ""};
+  decision.events.add(event);
 }
 
 // Where the person was a moment ago is where he is, until somebody else stands there: faces are looked for in every other image.
@@ -94,6 +126,7 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if (!last_ && state == PersonState::kUnsure) reason = "not sure who is in view";
   Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
   decision.requests = first_requests();
+  light_the_face(people, image, elapsed, decision);
   return decision;
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "pipeline/behavior/fill_light.h"
 #include "pipeline/behavior/follow.h"
 #include "pipeline/behavior/follow_person_parameters.h"
 #include "pipeline/behavior/look_along.h"
@@ -27,23 +28,27 @@ class FollowTask final : public Task {
   geometry::Camera camera_;
 };
 
-/// Follows a person at a distance (6.4): by face or marker while one is seen, else by the shirt. A stranger is not followed, whatever he wears.
+/// Follows a person at a distance (6.4): by face or marker while one is seen, else by the shirt. A stranger is not followed, whatever he wears. Where the face
+/// of somebody who is there is in the dark it asks for the fill light.
 class FollowPersonTask final : public Task {
  public:
   /// \param person  the number in the identities file; 0: whoever is enrolled and comes first.
-  /// \param camera  of the images that come.
+  /// \param camera  of the images that come.  \param light  when the fill light is asked for; not enabled: never.
   FollowPersonTask(const behavior::FollowPersonParameters& person, const behavior::FollowParameters& follow,
-                   const behavior::DriveLimits& limits, const geometry::Camera& camera);
+                   const behavior::DriveLimits& limits, const geometry::Camera& camera,
+                   const behavior::FillLightParameters& light = {});
   [[nodiscard]] Requests first_requests() const override;
   Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
 
  private:
   [[nodiscard]] behavior::Sighting sighting_of(const person::PersonSighting& who, const ImageView& image) const;
+  void light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed, Decision& decision);
 
   person::Label person_;  // 0: nobody yet
   behavior::Follow follow_;
   std::optional<behavior::Sighting> last_;  // of the person, with its age
   geometry::Camera camera_;
+  std::optional<behavior::FillLight> light_;
 };
 
 /// Who Is Who in a line (6.4.1.2): turns along a line of people and tells who each is. What is said is an event with numbers, never a name.

@@ -114,7 +114,7 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
   }
   if (config.task.kind == config::TaskKind::kPerson) {
     return std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
-                                                      optics_of(state));
+                                                      optics_of(state), config.person.fill_light);
   }
   if (config.task.kind == config::TaskKind::kLine) {
     return std::make_unique<stages::WhoIsWhoTask>(behavior::LookAlong(config.task.line, config.motion),

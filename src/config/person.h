@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "pipeline/behavior/fill_light_parameters.h"
 #include "pipeline/person/tracking/identifier.h"
 
 namespace cgsr::config {
@@ -11,6 +12,7 @@ struct Person {
   std::string identities;
   std::string cascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
   person::IdentifierParameters identifier;
+  behavior::FillLightParameters fill_light;
 
   [[nodiscard]] bool enabled() const { return knows_faces() || identifier.marker.enabled; }
   [[nodiscard]] bool knows_faces() const { return !identities.empty(); }
@@ -23,6 +25,7 @@ struct Person {
                "by a marker.");
     visit.path("cascade", self.cascade, "The cascade that finds frontal faces, of Debian's package opencv-data.");
     person::IdentifierParameters::describe(self.identifier, visit);
+    visit.section("fill_light", self.fill_light, "A light on faces in the dark (6.4.1.1)");
   }
 };
 

@@ -149,6 +149,10 @@ struct Robot {
     if (task.kind == TaskKind::kLine && !person.knows_faces()) {
       return "task.kind = \"line\" needs person.identities: it tells people by their faces, not by a marker";
     }
+    if (person.fill_light.enabled && (switches.fill_light_line.empty() || task.kind != TaskKind::kPerson)) {
+      return "person.fill_light needs switches.fill_light_line, the line of the light, and task.kind = \"person\", "
+             "which alone asks for it";
+    }
     if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
       return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "
              "one";

@@ -199,6 +199,42 @@ TEST_F(RunWithPeople, FollowsAMarkerAndThenTheShirtThatItTaught) {
   EXPECT_EQ(somebody_else, 0);
 }
 
+// 6.4.1.1: the detector finds no dark face in a dim room. Somebody known by a marker stands there: with the fill light the face is seen, without it it is not.
+TEST_F(RunWithPeople, LightsADarkFaceInADimRoom) {
+  enroll(7, kName);
+  std::string world = read_text(CGSR_SOURCE_DIR "/config/worlds/people.toml");
+  world.resize(world.find("[[person]]"));
+  const auto replace = [&world](const std::string& from, const std::string& to) {
+    ASSERT_NE(world.find(from), std::string::npos) << from;
+    world.replace(world.find(from), from.size(), to);
+  };
+  replace("illuminance_lux = [55.0, 54.0, 52.0]", "illuminance_lux = [5.0, 5.0, 5.0]");
+  replace("lumens = 3200.0", "lumens = 300.0");
+  replace("lumens = 250.0", "lumens = 1000.0");  // as bright as a smaller one with a beam
+  write_text(scratch_ / "dim.toml",
+             world +
+                 "[[person]]\nname = \"somebody\"\nidentity = 7\noutfit = [{ color = [0.8, 0.8, 0.8], marker = 7 }]\n"
+                 "walk = { stop = [{ at_m = [2.4, 0.0, 0.0], heading_deg = 180.0 }] }\n");
+  write_text(scratch_ / "scenario.toml",
+             "world = \"dim.toml\"\nrobot = \"robot\"\nends_at_s = 4.5\n"
+             "[[line]]\nname = \"arming\"\ninput = true\n[[line]]\nname = \"face light\"\n");
+  const auto faces = [&](bool light) {
+    const auto run = run_cgsr({"run", "--config",
+                               robot({{"sim.scenario", "\"scenario.toml\""},
+                                      {"person.marker.enabled", "true"},
+                                      {"person.marker.id", "7"},
+                                      {"switches.fill_light_line", "\"face light\""},
+                                      {"person.fill_light.enabled", light ? "true" : "false"}}),
+                               "--csv", scratch_ / "run.csv", "--force"});
+    EXPECT_EQ(run.exit_code, 0) << run.errors;
+    EXPECT_EQ((run.output + run.errors).find("fill light") != std::string::npos, light);
+    const auto rows = read_rows(read_text(scratch_ / "run.csv"));
+    return std::ranges::count_if(rows, [](const Row& row) { return row.at("faces") == "1"; });
+  };
+  EXPECT_LE(faces(false), 1);
+  EXPECT_GE(faces(true), 30) << "of 60 images with the light on";
+}
+
 TEST_F(RunWithPeople, RefusesARobotThatKnowsNobody) {
   const auto run = run_cgsr({"check", "--config", robot()});
   EXPECT_NE(run.exit_code, 0);

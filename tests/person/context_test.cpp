@@ -1,5 +1,8 @@
 #include "pipeline/person/context.h"
 
+#include <cstdint>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace cgsr::person {
@@ -27,6 +30,22 @@ TEST(Context, EveryDisturbanceLowersAndNoneRaises) {
     EXPECT_GE(worst, 0.0);
     EXPECT_LT(worst, 0.2);
   }
+}
+
+TEST(Context, OfARegionIsThatOfThePixelsWithinTheImage) {
+  constexpr int kWidth = 64, kHeight = 48;
+  std::vector<std::uint8_t> yuyv(std::size_t{2} * kWidth * kHeight, 128);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) yuyv[2 * static_cast<std::size_t>(y * kWidth + x)] = x < 32 ? 20 : 235;
+  }
+  const ImageView image{yuyv.data(), kWidth, kHeight, 2 * kWidth, PixelFormat::kYuyv};
+  EXPECT_EQ(context_of(image, {0, 0, 32, 48}).dark, 1.0);
+  EXPECT_EQ(context_of(image, {32, 0, 32, 48}).saturated, 1.0);
+  EXPECT_NEAR(context_of(image, {0, 0, 64, 48}).dark, 0.5, 0.07);
+  EXPECT_EQ(context_of(image, {-100, -100, 116, 116}).dark, 1.0) << "what is outside does not count";
+  EXPECT_EQ(context_of(image, {-100, 0, 50, 48}).dark, 0.0);
+  EXPECT_EQ(context_of(image, {}).dark, 0.0);
+  EXPECT_EQ(context_of({}, {0, 0, 32, 48}).dark, 0.0);
 }
 
 }  // namespace

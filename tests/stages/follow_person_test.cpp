@@ -1,3 +1,6 @@
+#include <cstdint>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "pipeline/stages/tasks.h"
@@ -97,6 +100,43 @@ TEST_F(FollowPerson, WithoutANumberFollowsTheFirstWhoIsEnrolledAndNobodyElse) {
   EXPECT_FALSE(see(follower, face(7, 30.0)).halt);
   EXPECT_EQ(see(follower, face(7, 30.0)).requests.person, 7);
   EXPECT_TRUE(see(follower, face(8, 30.0)).halt);
+}
+
+// Somebody who is known by shirt, the place above it dark and without a face: the line is asked for, and an event says why.
+TEST_F(FollowPerson, AsksForTheFillLightWhereTheFaceIsInTheDark) {
+  behavior::FillLightParameters light;
+  light.enabled = true;
+  std::vector<std::uint8_t> dark(std::size_t{2} * 640 * 480);
+  for (std::size_t i = 0; i < dark.size(); ++i) dark[i] = i % 2 == 0 ? 18 : 128;
+  const auto bright = std::vector<std::uint8_t>(dark.size(), 128);
+  FrameResult frame;
+  frame.people.age = Duration::zero();
+  frame.people.value.person = face(4, 60.0);
+  frame.people.value.person.source = person::PersonSource::kShirt;
+  frame.people.value.expected_face = Box{290, 100, 60, 60};
+  const auto asks = [&](FollowPersonTask& task, const std::vector<std::uint8_t>& pixels, int images) {
+    Decision last;
+    std::size_t events = 0;
+    for (int i = 0; i < images; ++i) {
+      last = task.decide(frame, {pixels.data(), 640, 480, 1280, PixelFormat::kYuyv}, kImage);
+      for (const Event& event : last.events) events += event.source == "fill light" ? 1 : 0;
+    }
+    const bool on = last.requests.lamps[static_cast<std::size_t>(LampLine::kFillLight)];
+    EXPECT_EQ(events, on ? 1U : 0U);
+    return on;
+  };
+  FollowPersonTask lit({.number = 4}, {}, {}, camera_, light), unlit({.number = 4}, {}, {}, camera_);
+  EXPECT_FALSE(asks(unlit, dark, 60)) << "not enabled";
+  EXPECT_FALSE(asks(lit, bright, 60));
+  EXPECT_TRUE(asks(lit, dark, 40));
+  FollowPersonTask seen({.number = 4}, {}, {}, camera_, light);
+  frame.people.value.face_count = 1;
+  frame.people.value.faces[0].box = Box{295, 102, 55, 55};
+  EXPECT_FALSE(asks(seen, dark, 60)) << "a face is there, whosever it is";
+  FollowPersonTask outside({.number = 4}, {}, {}, camera_, light);
+  frame.people.value.face_count = 0;
+  frame.people.value.expected_face = Box{290, -50, 60, 60};
+  EXPECT_FALSE(asks(outside, dark, 60)) << "most of its place is above the image";
 }
 
 TEST_F(FollowPerson, DoesNotDriveByAnIdentificationThatIsNotOfThisImage) {

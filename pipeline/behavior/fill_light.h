@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string_view>
+
+#include "pipeline/behavior/fill_light_parameters.h"
+#include "platform/time.h"
+
+namespace cgsr::behavior {
+
+/// What is known of the face of the person of interest.
+struct FaceEvidence {
+  bool expected = false;  ///< somebody is there by another characteristic, and his face would be within the image.
+  bool seen = false;      ///< a face is there.
+  double dark =
+      0.0;  ///< the share of the pixels at its place that are too dark for a hue, in [0, 1]; read only when expected.
+};
+
+struct FillLightDecision {
+  bool on = false;
+  bool changed = false;     ///< in this image.
+  std::string_view reason;  ///< of the change; text that lives as long as the program.
+};
+
+/// When the light under the camera shines on a face (6.4.1.1: the detector found a dark-skinned face only with a light on it).
+///
+///   off -> on   somebody has been there for no_face_s without a face, and its place is dark (min_dark)
+///   on -> off   a face was seen for face_s together, or nobody has been there for gone_s, or max_on_s are over
+///
+/// It stays off for rest_s afterwards, or for fruitless_rest_s where it showed no face: it cannot flicker, however the light itself changes what is seen.
+/// While it is on, darkness is not asked. Ours.
+///
+/// Threads: one. Allocates nothing.
+class FillLight {
+ public:
+  explicit FillLight(const FillLightParameters& parameters) : parameters_(parameters) {}
+
+  /// One image. \param elapsed  since the last one; negative counts as zero.
+  FillLightDecision decide(const FaceEvidence& evidence, Duration elapsed);
+
+ private:
+  [[nodiscard]] std::string_view reason_to_end() const;
+  FillLightDecision turn(bool on, std::string_view reason);
+
+  FillLightParameters parameters_;
+  bool on_ = false;
+  double in_state_s_ = 0.0;  // since it was switched
+  double faceless_s_ = 0.0;  // somebody there in the dark without a face, without a break
+  double face_s_ = 0.0;      // with a face since it is on, all together
+  double gone_s_ = 0.0;      // with nobody there, without a break
+  double rest_s_ = 0.0;      // how long it has to stay off now
+};
+
+}  // namespace cgsr::behavior
