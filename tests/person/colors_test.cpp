@@ -111,7 +111,9 @@ TEST(PersonColors, MapEveryCodeByItsShareHoweverFewAreLookedAt) {
     int labelled = 0;
     for (int code = 0; code < imaging::kColorCodes; ++code) {
       const double share = colors.share(3, imaging::rgb_of_code(static_cast<std::uint16_t>(code)), light);
-      const bool is_shirt = share >= PersonColorParameters{}.min_share;
+      // In another light colours up to two bins away count: 5 x 5 x 5 in place of 3 x 3 x 3 of them.
+      const double min_share = PersonColorParameters{}.min_share * (light.r == 0.9 ? 125.0 / 27.0 : 1.0);
+      const bool is_shirt = share >= min_share;
       ASSERT_EQ(map[static_cast<std::size_t>(code)], is_shirt ? 1 : 0) << code;
       labelled += is_shirt ? 1 : 0;
     }

@@ -1,4 +1,4 @@
-// Drawn people: a rectangle for a shirt, a box for a face that the test says is recognised. What is tested is who teaches whom.
+// What is tested is who teaches whom.
 
 #include <algorithm>
 #include <cstdint>
@@ -8,53 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/person/tracking/person_tracker.h"
+#include "tests/person/drawn_people.h"
 
 namespace cgsr::person {
 namespace {
-
-constexpr int kWidth = 320, kHeight = 240;
-using imaging::Rgb;
-constexpr Rgb kWall{0.6, 0.6, 0.6}, kRed{0.7, 0.15, 0.15}, kBlue{0.15, 0.2, 0.7};
-
-struct Picture {
-  std::vector<std::uint8_t> yuyv = std::vector<std::uint8_t>(std::size_t{2} * kWidth * kHeight);
-
-  explicit Picture(const Rgb& wall = kWall) { fill({0, 0, kWidth, kHeight}, wall); }
-  void fill(const Box& box, const Rgb& color) {
-    const auto yuv = imaging::yuv_of_rgb(color);
-    for (int y = static_cast<int>(box.y); y < static_cast<int>(box.y + box.height); ++y) {
-      for (int x = static_cast<int>(box.x); x < static_cast<int>(box.x + box.width); ++x) {
-        std::uint8_t* pixel = yuyv.data() + std::ptrdiff_t{2} * (y * kWidth + x);
-        pixel[0] = static_cast<std::uint8_t>(yuv.y + 0.5);
-        pixel[1] = static_cast<std::uint8_t>((x % 2 == 0 ? yuv.u : yuv.v) + 0.5);
-      }
-    }
-  }
-  [[nodiscard]] ImageView view() const { return {yuyv.data(), kWidth, kHeight, kWidth * 2, PixelFormat::kYuyv}; }
-};
-
-constexpr Box kFaceBox{140, 30, 40, 40};
-constexpr Box kShirtBox{120, 80, 80, 100};
-
-Picture standing(const Rgb& shirt) {
-  Picture picture;
-  picture.fill(kShirtBox, shirt);
-  return picture;
-}
-
-FaceSighting face_of(std::optional<Label> person, double confidence = 0.95) {
-  FaceMatch match;
-  match.label = person;
-  match.confidence = confidence;
-  return {kFaceBox, match};
-}
-
-void learn(PersonTracker& tracker, Label person, const Rgb& shirt) {
-  const Picture picture = standing(shirt);
-  // Ten faces; once somebody's shirt is known they are looked for in every other image only.
-  for (int image = 0; image < 20 && !tracker.shirts().knows(person); ++image)
-    tracker.update({picture.view(), face_of(person)});
-}
 
 // The story of Fig. 6.8: seen from the front, turned away, out of sight, back again.
 TEST(PersonTracker, FollowsTheShirtWhereTheFaceIsTurnedAwayAndNobodyWhereHeIsGone) {

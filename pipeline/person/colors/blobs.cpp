@@ -4,6 +4,20 @@
 
 namespace cgsr::person {
 
+std::pair<int, int> LabelImage::corner_of(const Box& box) const {
+  return {static_cast<int>(std::clamp(box.x, 0.0, double(width_px))),
+          static_cast<int>(std::clamp(box.y, 0.0, double(height_px)))};
+}
+
+LabelImage LabelImage::within(const Box& box) const {
+  const auto [left, top] = corner_of(box);
+  LabelImage part = *this;
+  part.labels = row(top) + left;
+  part.width_px = static_cast<int>(std::clamp(box.x + box.width, 0.0, double(width_px))) - left;
+  part.height_px = static_cast<int>(std::clamp(box.y + box.height, 0.0, double(height_px))) - top;
+  return part;
+}
+
 int BlobFinder::root_of(int run) {
   while (runs_[static_cast<std::size_t>(run)].parent != run) {
     int& parent = runs_[static_cast<std::size_t>(run)].parent;
@@ -29,15 +43,17 @@ void BlobFinder::join(int a, int b) {
   runs_[static_cast<std::size_t>(give)].parent = keep;
 }
 
-void BlobFinder::add_row(std::span<const std::uint16_t> row, int y, std::uint16_t max_label) {
-  for (std::size_t x = 0; x < row.size();) {
-    const std::uint16_t label = row[x];
-    const std::size_t begin = x;
-    while (x < row.size() && row[x] == label) ++x;
+void BlobFinder::add_row(const LabelImage& image, int y, std::uint16_t max_label) {
+  const std::uint16_t* row = image.row(y);
+  const int shift = image.shift, mask = image.mask;
+  for (int x = 0; x < image.width_px;) {
+    const int label = row[x] >> shift & mask;
+    const int begin = x;
+    while (x < image.width_px && (row[x] >> shift & mask) == label) ++x;
     if (label == 0 || label > max_label) continue;
-    const int length = static_cast<int>(x - begin);
-    const Blob blob{label, length, {double(begin), double(y), double(length), 1.0}};
-    runs_.push_back({static_cast<int>(begin), static_cast<int>(x), y, label, static_cast<int>(runs_.size()), blob});
+    const auto kind = static_cast<std::uint16_t>(label);
+    const Blob blob{kind, x - begin, {double(begin), double(y), double(x - begin), 1.0}};
+    runs_.push_back({begin, x, y, kind, static_cast<int>(runs_.size()), blob});
   }
 }
 
@@ -54,15 +70,17 @@ void BlobFinder::connect(std::size_t above, std::size_t current) {
 
 std::span<const Blob> BlobFinder::largest(std::span<const std::uint16_t> labels, int width_px, int height_px,
                                           std::uint16_t max_label) {
+  return largest({labels.data(), width_px, height_px, width_px}, max_label);
+}
+
+std::span<const Blob> BlobFinder::largest(const LabelImage& image, std::uint16_t max_label) {
   runs_.clear();
   largest_.clear();
-  if (width_px <= 0) return largest_;
+  if (image.empty()) return largest_;
   std::size_t above = 0;
-  for (int y = 0; y < height_px; ++y) {
+  for (int y = 0; y < image.height_px; ++y) {
     const std::size_t current = runs_.size();
-    add_row(labels.subspan(static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px),
-                           static_cast<std::size_t>(width_px)),
-            y, max_label);
+    add_row(image, y, max_label);
     connect(above, current);
     above = current;
   }

@@ -35,12 +35,12 @@ void for_each_met(const std::vector<std::uint16_t>& counts, const Visit& visit) 
   }
 }
 
-/// Calls visit(bin) for a colour and those next to it.
+/// Calls visit(bin) for a colour and those at most `reach` bins away in each channel.
 template <class Visit>
-void for_each_near(int r, int g, int b, const Visit& visit) {
-  for (int i = std::max(0, r - 1); i <= std::min(kSide - 1, r + 1); ++i) {
-    for (int j = std::max(0, g - 1); j <= std::min(kSide - 1, g + 1); ++j) {
-      for (int k = std::max(0, b - 1); k <= std::min(kSide - 1, b + 1); ++k) visit(bin_of(i, j, k));
+void for_each_near(int r, int g, int b, int reach, const Visit& visit) {
+  for (int i = std::max(0, r - reach); i <= std::min(kSide - 1, r + reach); ++i) {
+    for (int j = std::max(0, g - reach); j <= std::min(kSide - 1, g + reach); ++j) {
+      for (int k = std::max(0, b - reach); k <= std::min(kSide - 1, b + reach); ++k) visit(bin_of(i, j, k));
     }
   }
 }
@@ -51,12 +51,12 @@ std::size_t ColorHistogram::bin(const imaging::Rgb& color) {
   return bin_of(level_of(color.r), level_of(color.g), level_of(color.b));
 }
 
-std::vector<std::uint8_t> ColorHistogram::met_nearby() const {
+std::vector<std::uint8_t> ColorHistogram::met_nearby(int reach) const {
   if (total_ == 0) return {};
   std::vector<std::uint8_t> near(kBins, 0);
-  for_each_met(counts_, [&near](std::size_t bin) {
+  for_each_met(counts_, [&near, reach](std::size_t bin) {
     const auto channel = [bin](std::size_t below) { return static_cast<int>(bin / below % kSide); };
-    for_each_near(channel(std::size_t{kSide} * kSide), channel(kSide), channel(1),
+    for_each_near(channel(std::size_t{kSide} * kSide), channel(kSide), channel(1), reach,
                   [&near](std::size_t one) { near[one] = 1; });
   });
   return near;
@@ -87,10 +87,11 @@ void ColorHistogram::fade() {
   }
 }
 
-double ColorHistogram::share(const imaging::Rgb& color) const {
+double ColorHistogram::share(const imaging::Rgb& color, int reach) const {
   if (total_ == 0) return 0.0;
   std::uint32_t sum = 0;
-  for_each_near(level_of(color.r), level_of(color.g), level_of(color.b), [&](std::size_t one) { sum += counts_[one]; });
+  for_each_near(level_of(color.r), level_of(color.g), level_of(color.b), reach,
+                [&](std::size_t one) { sum += counts_[one]; });
   return static_cast<double>(sum) / total_;
 }
 

@@ -20,10 +20,10 @@ class ColorHistogram {
   void clear();
   [[nodiscard]] bool empty() const { return total_ == 0; }
 
-  /// \return the share of the samples that have this colour or one next to it, in [0, 1].
-  [[nodiscard]] double share(const imaging::Rgb& color) const;
+  /// \return the share of the samples that have this colour or one at most `reach` bins away in each channel, in [0, 1].
+  [[nodiscard]] double share(const imaging::Rgb& color, int reach = 1) const;
   /// For each colour, by bin(): whether share() is above 0. Empty where nothing was met.
-  [[nodiscard]] std::vector<std::uint8_t> met_nearby() const;
+  [[nodiscard]] std::vector<std::uint8_t> met_nearby(int reach = 1) const;
   /// \return the place of a colour in met_nearby().
   [[nodiscard]] static std::size_t bin(const imaging::Rgb& color);
   /// The brightest level of each channel that 2 % of the samples reach: what Alg. 3.1 takes the light from, with outliers left out.

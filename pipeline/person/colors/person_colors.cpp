@@ -1,6 +1,7 @@
 #include "pipeline/person/colors/person_colors.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cgsr::person {
 namespace {
@@ -19,6 +20,15 @@ color::Light assumed_light(std::span<const imaging::Rgb> positive, double assume
   recorded.add(positive);
   const imaging::Rgb bright = recorded.bright_level();
   return {std::max(assumed, bright.r), std::max(assumed, bright.g), std::max(assumed, bright.b)};
+}
+
+// The codes of an image are about 3 bins apart, 0.046 of a texture in the light that is assumed at learning. Under that light they are the samples' own; under any other
+// they lie between them, and the further apart the darker it is.
+int reach_under(const color::Light& light, const color::Light& learned) {
+  if (light.r == learned.r && light.g == learned.g && light.b == learned.b) return 1;
+  constexpr double kHalfStep = 1.6;  // bins
+  const double widest = std::max({learned.r / light.r, learned.g / light.g, learned.b / light.b});
+  return std::clamp(static_cast<int>(std::ceil(kHalfStep * widest)), 2, 4);
 }
 
 /// The colours of all codes: made once, with the first map, of nobody, before the first image.
@@ -82,6 +92,13 @@ void PersonColors::add(Label person, std::span<const imaging::Rgb> positive, std
   }
 }
 
+void PersonColors::doubt(Label person, std::span<const imaging::Rgb> negative, const color::Light& light) {
+  Person* known = find(person);
+  if (known == nullptr) return;
+  known->codes_light.reset();
+  known->negative.add(textures(negative, light));
+}
+
 void PersonColors::forget(Label person) {
   std::erase_if(people_, [&](const Person& one) { return one.label == person; });
 }
@@ -96,7 +113,9 @@ bool PersonColors::knows(Label person) const {
 
 double PersonColors::share(Label person, const imaging::Rgb& recorded, const color::Light& light) const {
   const Person* known = find(person);
-  return known == nullptr ? 0.0 : known->positive.share(color::without_light(recorded, light));
+  return known == nullptr
+             ? 0.0
+             : known->positive.share(color::without_light(recorded, light), reach_under(light, known->light));
 }
 
 std::optional<color::Light> PersonColors::learned_light(Label person) const {
@@ -113,14 +132,16 @@ std::vector<Label> PersonColors::order() const {
 void PersonColors::find_codes(Person& person, const color::Light& light) const {
   person.codes.clear();
   person.codes_light = light;
-  const std::vector<std::uint8_t> near = person.positive.met_nearby();
+  const int reach = reach_under(light, person.light);
+  const double min_share = parameters_.min_share * std::pow((2.0 * reach + 1.0) / 3.0, 3);  // by the colours looked at
+  const std::vector<std::uint8_t> near = person.positive.met_nearby(reach);
   if (near.empty()) return;
   const std::vector<imaging::Rgb>& colors = colors_of_codes();
   for (int code = 0; code < imaging::kColorCodes; ++code) {
     const auto texture = color::without_light(colors[static_cast<std::size_t>(code)], light);
     if (near[ColorHistogram::bin(texture)] == 0) continue;
-    const double share = person.positive.share(texture);
-    if (share < parameters_.min_share || share < parameters_.min_ratio * person.negative.share(texture)) continue;
+    const double share = person.positive.share(texture, reach);
+    if (share < min_share || share < parameters_.min_ratio * person.negative.share(texture, reach)) continue;
     person.codes.push_back(static_cast<std::uint16_t>(code));
   }
 }

@@ -52,6 +52,8 @@ class PersonColors {
   void learn(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
   /// Adds to what is known of a person who is there; else the same as learn().
   void add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
+  /// What looks like the person and is not: negative samples, recorded under a light. Nothing happens where the person is not known.
+  void doubt(Label person, std::span<const imaging::Rgb> negative, const color::Light& light);
   void forget(Label person);
   /// Equal colours go to this person from now on.
   void prefer(Label person);

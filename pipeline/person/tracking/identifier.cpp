@@ -7,6 +7,18 @@
 
 namespace cgsr::person {
 
+namespace {
+
+constexpr int kImagesToForget = 15;  // without the latest person of interest
+
+bool is_above(const Box& face, const Box& shirt) {
+  constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
+  const double middle = face.x + face.width / 2, above = shirt.y - face.y;
+  return middle >= shirt.x && middle <= shirt.x + shirt.width && above >= 0.0 && above <= kMostAbove * face.width;
+}
+
+}  // namespace
+
 Identifier::Identifier(std::optional<FaceDetector> detector, std::unique_ptr<FaceRecognizer> recognizer,
                        const IdentifierParameters& parameters)
     : recognizer_(std::move(recognizer)), tracker_(parameters.tracker) {
@@ -41,14 +53,12 @@ void Identifier::exchange_with_recognizer(const ImageView& image) {
 // Whether a face is of somebody who stands beside the person of interest: it says nothing of him. A face above his shirt does. Where a task asks for somebody
 // it is told at once who else is there; else the latest person of interest stays it until he is forgotten.
 bool Identifier::is_beside(const FaceTrack& face, std::optional<Label> asked) const {
-  constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
   const std::optional<Label> interest = asked ? asked : interest_;
   if (!interest || face.match->label == interest) return false;
+  if (last_.source == PersonSource::kFaceColor && last_.person == interest)
+    return intersection(face.box, last_.box).empty();
   if (last_.source != PersonSource::kShirt || last_.person != interest) return !asked;
-  const Box& shirt = last_.box;
-  const double middle = face.box.x + face.box.width / 2, above = shirt.y - face.box.y;
-  const bool over = middle >= shirt.x && middle <= shirt.x + shirt.width;
-  return !over || above < 0.0 || above > kMostAbove * face.box.width;
+  return !is_above(face.box, last_.box);
 }
 
 // The face of the person of interest; the largest one that was compared where his is not followed, somebody's who is known before a stranger's. While it is
@@ -85,13 +95,12 @@ std::optional<MarkerSighting> Identifier::marker_of() const {
 // Whoever was identified is of interest until he has not been for some images: one or two without him are no reason to turn to somebody else (6.2.2, the
 // latest person of interest).
 void Identifier::remember(const PersonSighting& now, std::optional<Label> asked) {
-  constexpr int kImagesToForget = 15;
   const bool known = now.person && *now.person != kStranger;
   const bool stays = known && now.person == interest_;
   images_without_ = stays ? 0 : images_without_ + 1;
   if (asked) {
     interest_ = asked;
-  } else if (known && (!interest_ || now.source != PersonSource::kShirt)) {
+  } else if (known && (!interest_ || now.source == PersonSource::kFace || now.source == PersonSource::kMarker)) {
     interest_ = now.person;
     images_without_ = 0;
   } else if (images_without_ >= kImagesToForget) {
@@ -99,14 +108,12 @@ void Identifier::remember(const PersonSighting& now, std::optional<Label> asked)
   }
 }
 
-// Who is known by his shirt alone may be somebody else: his face is looked for first.
+// Who is known by colours or a marker may be somebody else: his face is looked for first.
 std::optional<Box> Identifier::expected_face() const {
-  constexpr double kAbove = 1.2;  // from the face's upper edge to the shirt's, in widths of the face
   if (last_.source == PersonSource::kMarker) return last_marker_face_;
+  if (last_.source == PersonSource::kFaceColor) return last_.box;
   if (last_.source != PersonSource::kShirt || last_.face_px <= 0.0) return std::nullopt;
-  const double face_px = last_.face_px;
-  const double middle = last_.box.x + last_.box.width / 2;
-  return Box{middle - face_px / 2, last_.box.y - kAbove * face_px, face_px, face_px};
+  return face_above(last_.box, last_.face_px);
 }
 
 PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> asked, WorkBudget& budget) {

@@ -3,7 +3,7 @@
 namespace cgsr::person {
 namespace {
 
-constexpr std::size_t kMarker = 0, kFace = 1, kShirt = 2;  // places among the members
+constexpr std::size_t kMarker = 0, kFace = 1, kFaceColor = 2, kShirt = 3;  // places among the members
 
 }  // namespace
 
@@ -15,6 +15,8 @@ std::string_view to_string(PersonSource source) {
       return "face";
     case PersonSource::kShirt:
       return "shirt";
+    case PersonSource::kFaceColor:
+      return "face color";
     case PersonSource::kMarker:
       return "marker";
   }
@@ -31,53 +33,110 @@ std::optional<Classification> MarkerClassifier::classify(const PersonImage& inpu
   return Classification{input.marker->person.value_or(kStranger), input.marker->confidence};
 }
 
+Box face_above(const Box& shirt, double face_px) {
+  constexpr double kAbove = 1.2;  // from the face's upper edge to the shirt's, in widths of the face
+  const double middle = shirt.x + shirt.width / 2;
+  return {middle - face_px / 2, shirt.y - kAbove * face_px, face_px, face_px};
+}
+
 PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)
-    : parameters_(parameters), shirts_(parameters.shirt) {
+    : parameters_(parameters),
+      labels_(parameters.shirt.max_width_px, parameters.shirt.max_height_px),
+      face_colors_(labels_, parameters.face_color),
+      shirts_(labels_, parameters.shirt) {
   feedback_.add(markers_, 0);
   feedback_.add(faces_, 0);
+  feedback_.add(face_colors_, 1);
   feedback_.add(shirts_, 1);
+}
+
+void PersonTracker::forget(Label person) {
+  shirts_.forget(person);
+  face_colors_.forget(person);
 }
 
 bool PersonTracker::face_is_due() const {
   return shirts_.people() == 0 || since_face_ + 1 >= parameters_.faces_every;
 }
 
+// A map costs as much as looking for faces: each is made in an image without faces, one at a time.
+void PersonTracker::look_up(const ImageView& image, bool due) {
+  if (!due || parameters_.faces_every == 1) {
+    if (!shirts_.prepare()) face_colors_.prepare();
+  }
+  labels_.look(image);
+}
+
 PersonSighting PersonTracker::update(const PersonImage& input, const ImageContext& context) {
   const bool due = face_is_due();
   since_face_ = due ? 0 : since_face_ + 1;
+  look_up(input.image, due);
   feedback_.require(kFace, due);
   feedback_.rely(kMarker, reliability(Cue::kGrey, context, parameters_.context));
   feedback_.rely(kFace, reliability(Cue::kGrey, context, parameters_.context));
+  feedback_.rely(kFaceColor, reliability(Cue::kColor, context, parameters_.context));
   feedback_.rely(kShirt, reliability(Cue::kColor, context, parameters_.context));
-  const auto settled = feedback_.classify(input);
-  PersonImage looked_at = input;
-  if (!due) looked_at.face.reset();
-  shirts_.observe(looked_at);
+  PersonImage now = input;
+  if (!due) now.face.reset();
+  now.head = head_of(now);
+  const auto settled = feedback_.classify(now);
+  shirts_.observe(now);
+  if (now.face) face_colors_.observe_face(now, *now.face);
   if (!settled) return {};
   PersonSighting sighting;
   sighting.person = settled->label;
   sighting.confidence = settled->confidence;
-  const auto names_him = [&](std::size_t place) {
-    const auto& answer = feedback_.members()[place].answer;
-    return answer && answer->label == settled->label;
+  locate(input, settled->label, sighting);
+  if (sighting.source == PersonSource::kFaceColor) shirts_.learn_negative();
+  measure(input, sighting);
+  confirm_head(now, sighting);
+  return sighting;
+}
+
+// By marker or face of this image, else where it was in the last one.
+std::optional<PersonHead> PersonTracker::head_of(const PersonImage& input) const {
+  std::optional<PersonHead> head = face_colors_.head();
+  if (input.face && input.face->match.label) head = PersonHead{*input.face->match.label, input.face->box};
+  if (input.marker && input.marker->person) head = PersonHead{*input.marker->person, input.marker->face};
+  const bool of_somebody_else = head && input.interest && head->person != *input.interest;
+  return of_somebody_else ? std::nullopt : head;
+}
+
+void PersonTracker::locate(const PersonImage& input, Label person, PersonSighting& sighting) const {
+  const auto named_by = [&](std::size_t member) {
+    const auto& answer = feedback_.members()[member].answer;
+    return answer && answer->label == person;
   };
-  if (names_him(kMarker)) {
+  if (named_by(kMarker)) {
     sighting.source = PersonSource::kMarker;
     sighting.box = input.marker->box;
-  } else if (names_him(kFace)) {
+  } else if (named_by(kFace)) {
     sighting.source = PersonSource::kFace;
     sighting.box = input.face->box;
-  } else {
+  } else if (named_by(kShirt)) {
     sighting.source = PersonSource::kShirt;
     sighting.box = shirts_.box();
+  } else {
+    sighting.source = PersonSource::kFaceColor;
+    sighting.box = face_colors_.head()->box;
   }
-  measure(input, sighting);
-  return sighting;
+}
+
+void PersonTracker::confirm_head(const PersonImage& input, const PersonSighting& sighting) {
+  if (sighting.person == kStranger) return;
+  if (sighting.source == PersonSource::kMarker) face_colors_.confirm(*sighting.person, input.marker->face);
+  if (sighting.source == PersonSource::kFace) face_colors_.confirm(*sighting.person, sighting.box);
+  if (sighting.source == PersonSource::kShirt && sighting.face_px > 0.0)
+    face_colors_.confirm(*sighting.person, face_above(sighting.box, sighting.face_px));
 }
 
 // The height of a shirt changes least when its person turns.
 void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) {
   constexpr double kNew = 0.1;  // share of a new ratio
+  if (sighting.source == PersonSource::kFaceColor) {
+    sighting.face_px = sighting.box.width;
+    return;
+  }
   if (sighting.source == PersonSource::kShirt) {
     sighting.face_px = shirt_per_face_ > 0.0 ? sighting.box.height / shirt_per_face_ : face_px_;
     return;

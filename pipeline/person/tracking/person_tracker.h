@@ -4,8 +4,10 @@
 #include <optional>
 #include <string_view>
 
+#include "pipeline/person/colors/color_labels.h"
 #include "pipeline/person/context.h"
 #include "pipeline/person/feedback.h"
+#include "pipeline/person/tracking/face_color_classifier.h"
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 namespace cgsr::person {
@@ -31,12 +33,14 @@ class MarkerClassifier final : public Classifier<PersonImage> {
 
 struct PersonTrackerParameters {
   ShirtParameters shirt{};
+  FaceColorParameters face_color{};
   ContextParameters context{};
   int faces_every = 2;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("shirt", self.shirt, "Shirts by their colours");
+    visit.section("face_color", self.face_color, "Skin and hair by their colours (6.3)");
     visit.section("context", self.context, "How a disturbed image lowers confidence");
     visit.number("faces_every", self.faces_every, Range{1, 30}, "",
                  "A face is looked for in one of this many images once a shirt is known.");
@@ -44,7 +48,7 @@ struct PersonTrackerParameters {
 };
 
 /// By which characteristic somebody was identified.
-enum class PersonSource : std::uint8_t { kNone, kFace, kShirt, kMarker };
+enum class PersonSource : std::uint8_t { kNone, kFace, kShirt, kFaceColor, kMarker };
 std::string_view to_string(PersonSource source);
 
 /// Who is in the image.
@@ -52,12 +56,17 @@ struct PersonSighting {
   std::optional<Label> person;  ///< nothing: nobody is identified; kStranger: somebody who is not enrolled.
   PersonSource source = PersonSource::kNone;
   double confidence = 0.0;
-  Box box;               ///< of what identified him, in pixels of the image.
-  double face_px = 0.0;  ///< width of the face at the person's distance, seen, or by shirt or marker; 0: not known.
+  Box box;  ///< of what identified him, in pixels of the image.
+  double face_px =
+      0.0;  ///< width of the face at the person's distance, seen, by its colours, by shirt or marker; 0: not known.
 };
 
-/// One person from image to image by face or marker and shirt (6.2): Alg. 6.1 with marker and face as primary and the shirt as secondary characteristic, and
-/// the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a stranger's overrides a shirt and teaches it nothing.
+/// \return where the face above a shirt is looked for, both in pixels of one image. \param face_px  the face's width at the person's distance. Ours.
+Box face_above(const Box& shirt, double face_px);
+
+/// One person from image to image by marker, face, face colour and shirt (6.2, 6.3): Alg. 6.1 with marker and face as primary and the two others as secondary
+/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a stranger's overrides a shirt and teaches it
+/// nothing; the colours of a head that is followed show that what looks like the shirt elsewhere is none (6.3.1).
 ///
 /// Threads: one.
 class PersonTracker {
@@ -70,15 +79,22 @@ class PersonTracker {
   /// \param input  of this image; its face is looked at only where face_is_due() said so.  \param context  how it was taken.
   PersonSighting update(const PersonImage& input, const ImageContext& context = {});
 
-  void forget(Label person) { shirts_.forget(person); }
+  void forget(Label person);
   [[nodiscard]] const ShirtClassifier& shirts() const { return shirts_; }
+  [[nodiscard]] const FaceColorClassifier& face_colors() const { return face_colors_; }
 
  private:
+  void look_up(const ImageView& image, bool due);
+  void locate(const PersonImage& input, Label person, PersonSighting& sighting) const;
   void measure(const PersonImage& input, PersonSighting& sighting);
+  [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
+  void confirm_head(const PersonImage& input, const PersonSighting& sighting);
 
   PersonTrackerParameters parameters_;
+  ColorLabels labels_;
   MarkerClassifier markers_;
   FaceClassifier faces_;
+  FaceColorClassifier face_colors_;
   ShirtClassifier shirts_;
   FeedbackClassifier<PersonImage> feedback_;
   int since_face_ = 0;    // images since one was looked for

@@ -1,12 +1,49 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace cgsr::person {
 namespace {
 
-constexpr int kFactor = 2;  // shirts are sought at 320x240 (6.2.2)
+constexpr int kFactor = ColorLabels::kFactor;
+constexpr double kSamePlace = 0.4;  // overlap by the union
+
+double overlap(const Box& a, const Box& b) {
+  const double both = intersection(a, b).area();
+  const double either = a.area() + b.area() - both;
+  return either > 0.0 ? both / either : 0.0;
+}
+
+Box in_camera(const Blob& blob, int left = 0, int top = 0) {
+  return {(blob.box.x + left) * kFactor, (blob.box.y + top) * kFactor, blob.box.width * kFactor,
+          blob.box.height * kFactor};
+}
+
+double camera_area(const Blob& blob) {
+  return double(blob.area_px) * kFactor * kFactor;
+}
+
+// In a light that changes a blob loses its darker sides first: the shirt is as large as it was, and gets smaller slowly.
+Box settled(const Box& before, const Box& now) {
+  constexpr double kShrinks = 0.998;  // in an image
+  const double width = std::max(now.width, kShrinks * before.width);
+  const double height = std::max(now.height, kShrinks * before.height);
+  return {now.x + (now.width - width) / 2, now.y + (now.height - height) / 2, width, height};
+}
+
+// The middle of a shirt, and what is to its left and right. All pixels count: those that have the shirt's colours in a light that changes have changed least.
+std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
+  const auto strip = [&](double x) { return mean_color(image, {x, shirt.y, shirt.width / 2, shirt.height}); };
+  const auto middle =
+      mean_color(image, {shirt.x + shirt.width / 4, shirt.y + shirt.height / 4, shirt.width / 2, shirt.height / 2});
+  const auto left = strip(shirt.x - 0.75 * shirt.width), right = strip(shirt.x + 1.25 * shirt.width);
+  if (!middle || (!left && !right)) return std::nullopt;
+  if (!left || !right) return PartColors{*middle, left ? *left : *right};
+  return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
+}
 
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
 bool is_facing(const MarkerSighting& marker) {
@@ -33,12 +70,29 @@ SamplingRegions sampling_regions(const MarkerSighting& marker) {
   return regions;
 }
 
-ShirtClassifier::ShirtClassifier(const ShirtParameters& parameters)
+Box shirt_window(const Box& head, int image_height_px) {
+  constexpr double kBeside = 3.5, kFromChin = 0.5;  // in sides of the face
+  const double middle = head.x + head.width / 2, top = head.y + (1.0 - kFromChin) * head.height;
+  return {middle - kBeside * head.width, top, 2.0 * kBeside * head.width, std::max(0.0, image_height_px - top)};
+}
+
+ShirtClassifier::ShirtClassifier(ColorLabels& labels, const ShirtParameters& parameters)
     : parameters_(parameters),
+      labels_(labels),
       colors_(parameters.colors),
-      map_(imaging::kColorCodes, 0),
-      reduced_(parameters.max_width_px, parameters.max_height_px) {
-  colors_.make_map({}, map_);
+      light_(parameters.light),
+      map_(imaging::kColorCodes, 0) {
+  prepare();
+}
+
+bool ShirtClassifier::prepare() {
+  if (!map_is_due_) return false;
+  std::vector<color::Light> lights;
+  for (const Label person : colors_.order()) lights.push_back(light_.of(person).value_or(color::Light{1.0, 1.0, 1.0}));
+  colors_.make_map(lights, map_);
+  labels_.set(ColorPart::kShirt, map_);
+  map_is_due_ = false;
+  return true;
 }
 
 bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
@@ -47,21 +101,40 @@ bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
          shirt.width <= parameters_.max_width * last_face_->width;
 }
 
-std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
-  last_ = input;
-  box_ = {};
-  // Not in the image in which something was learned: there faces were looked for as well.
-  if (map_is_due_) colors_.make_map({}, map_);
-  map_is_due_ = false;
-  if (colors_.people() == 0 || !imaging::reduce(input.image, kFactor, map_, reduced_)) return std::nullopt;
+// The largest below the head is the shirt; sleeves and what a light has torn off are smaller.
+bool ShirtClassifier::find_below(const PersonHead& head, int image_height_px) {
+  constexpr double kLowest = 1.6;  // of the shirt's upper edge below the chin, in sides of the face
+  const LabelImage image = labels_.of(ColorPart::kShirt);
   const auto order = colors_.order();
-  const auto pixels = static_cast<std::size_t>(reduced_.width_px) * static_cast<std::size_t>(reduced_.height_px);
-  const auto found = blobs_.largest({reduced_.labels.data(), pixels}, reduced_.width_px, reduced_.height_px,
-                                    static_cast<std::uint16_t>(order.size()));
+  const Box window = shirt_window(head.box, image_height_px);
+  const Box small{window.x / kFactor, window.y / kFactor, window.width / kFactor, window.height / kFactor};
+  const auto [left, top] = image.corner_of(small);
+  for (const Blob& blob : blobs_.largest(image.within(small), static_cast<std::uint16_t>(order.size()))) {
+    if (order[blob.label - std::size_t{1}] != head.person) continue;
+    const Box box = in_camera(blob, left, top);
+    const bool hangs = box.y <= head.box.y + (1.0 + kLowest) * head.box.height;
+    if (!hangs || !is_plausible(box, camera_area(blob))) return false;
+    box_ = box;
+    return true;
+  }
+  return false;
+}
+
+std::optional<Label> ShirtClassifier::find(const PersonImage& input) {
+  const LabelImage image = labels_.of(ColorPart::kShirt);
+  if (colors_.people() == 0 || image.empty()) return std::nullopt;
+  const bool head = input.head && colors_.knows(input.head->person);
+  if (head && find_below(*input.head, input.image.height_px)) return input.head->person;
+  const auto order = colors_.order();
   const Blob* largest = nullptr;
-  for (const Blob& blob : found) {
-    const Box box{blob.box.x * kFactor, blob.box.y * kFactor, blob.box.width * kFactor, blob.box.height * kFactor};
-    if (!is_plausible(box, double(blob.area_px) * kFactor * kFactor)) continue;
+  for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order.size()))) {
+    const Box box = in_camera(blob);
+    if (!is_plausible(box, camera_area(blob))) continue;
+    const Label person = order[blob.label - std::size_t{1}];
+    if (head && person == input.head->person) {
+      elsewhere_ = box;
+      continue;
+    }
     const auto rank = [&](const Blob& one) {
       return std::pair(input.interest && order[one.label - std::size_t{1}] == *input.interest, one.area_px);
     };
@@ -70,15 +143,55 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
     box_ = box;
   }
   if (largest == nullptr) return std::nullopt;
-  const Label person = order[largest->label - std::size_t{1}];
+  return order[largest->label - std::size_t{1}];
+}
+
+std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
+  last_ = input;
+  box_ = elsewhere_ = {};
+  if (since_trained_ > 0) ++since_trained_;
+  if (since_negative_ > 0) ++since_negative_;
+  auto person = find(input);
+  // In a light that is only supposed something else may have the shirt's colours: it has to be where the shirt was.
+  if (supposed_ && person == person_ && overlap(box_, place_) < kSamePlace) person.reset();
   const auto& marker = input.marker;
-  if (marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) return std::nullopt;
-  return Classification{person, parameters_.confidence};
+  if (person && marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) person.reset();
+  if (person) {
+    found(input, *person);
+    return Classification{*person, parameters_.confidence};
+  }
+  box_ = {};
+  lost(input);
+  return std::nullopt;
+}
+
+void ShirtClassifier::found(const PersonImage& input, Label person) {
+  place_ = person == person_ ? settled(place_, box_) : box_;
+  person_ = person;
+  missed_ = since_trained_ = 0;
+  supposed_ = false;
+  const auto colors = colors_of(input.image, place_);
+  if (colors && light_.found(person, *colors)) map_is_due_ = true;
+}
+
+// The light may have changed at once: then the place where the shirt was has, in the new light, the shirt's colours. This is supposed once for each loss.
+void ShirtClassifier::lost(const PersonImage& input) {
+  if (!person_) return;
+  if (supposed_ && !map_is_due_) {  // it was looked for in that light
+    supposed_ = false;
+    light_.take_back(*person_);
+    map_is_due_ = true;
+  }
+  if (++missed_ != 1) return;
+  const auto now = colors_of(input.image, place_);
+  if (!now || !light_.suppose(*person_, *now)) return;
+  supposed_ = map_is_due_ = true;
 }
 
 // The person's marker before a face; of two strangers either will do.
 std::optional<ShirtClassifier::Teacher> ShirtClassifier::teacher_of(const PersonImage& input) {
-  const auto& [image, face, interest, marker] = input;
+  const auto& face = input.face;
+  const auto& marker = input.marker;
   if (marker && is_facing(*marker) && (marker->person || !face))
     return Teacher{marker->person, marker->face, sampling_regions(*marker)};
   if (face) return Teacher{face->match.label, face->box, sampling_regions(face->box)};
@@ -90,13 +203,32 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   auto background = region_colors(input.image, regions.background[0]);
   const auto right = region_colors(input.image, regions.background[1]);
   background.insert(background.end(), right.begin(), right.end());
-  colors_.learn(*teacher.person, region_colors(input.image, regions.shirt), background);
+  const Label person = *teacher.person;
+  colors_.learn(person, region_colors(input.image, regions.shirt), background);
+  if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);
+  supposed_ = false;
   map_is_due_ = true;
 }
 
-void ShirtClassifier::train(Label label, std::optional<Label>) {
+void ShirtClassifier::train(Label label, std::optional<Label> mistaken_for) {
   const auto teacher = teacher_of(last_);
-  if (teacher && teacher->person == label && colors_.knows(label)) learn(last_, *teacher);
+  if (!teacher || teacher->person != label || !colors_.knows(label)) return;
+  const bool in_vain = since_trained_ > 0 && since_trained_ <= parameters_.images_between;
+  if (in_vain && !mistaken_for) return;
+  learn(last_, *teacher);
+  since_trained_ = 1;
+  since_negative_ = 0;
+  learn_negative();
+}
+
+void ShirtClassifier::learn_negative() {
+  const bool lately = since_negative_ > 0 && since_negative_ <= parameters_.images_between;
+  if (!last_.head || elsewhere_.empty() || lately) return;
+  const auto light = light_.of(last_.head->person);
+  if (!light) return;
+  colors_.doubt(last_.head->person, region_colors(last_.image, elsewhere_), *light);
+  since_negative_ = 1;
+  map_is_due_ = true;
 }
 
 void ShirtClassifier::observe(const PersonImage& input) {
@@ -111,8 +243,10 @@ void ShirtClassifier::observe(const PersonImage& input) {
 
 void ShirtClassifier::forget(Label person) {
   colors_.forget(person);
+  light_.forget(person);
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
+  if (person_ == person) person_.reset();
 }
 
 }  // namespace cgsr::person

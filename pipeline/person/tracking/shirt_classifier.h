@@ -2,32 +2,17 @@
 
 #include <optional>
 
-#include "pipeline/imaging/reduce.h"
 #include "pipeline/person/classifier.h"
 #include "pipeline/person/colors/blobs.h"
+#include "pipeline/person/colors/color_labels.h"
+#include "pipeline/person/colors/part_light.h"
 #include "pipeline/person/colors/person_colors.h"
-#include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/marker/marker_tracks.h"
+#include "pipeline/person/tracking/person_image.h"
 #include "platform/box.h"
-#include "platform/image_view.h"
 #include "platform/parameters.h"
 
 namespace cgsr::person {
-
-/// A face that was found and compared.
-struct FaceSighting {
-  Box box;  ///< in pixels of the image.
-  FaceMatch match;
-};
-
-/// What the classifiers of a person look at.
-struct PersonImage {
-  ImageView image;  ///< YUYV, of at most the size that the tracker was made for.
-  std::optional<FaceSighting> face = std::nullopt;
-  std::optional<Label> interest =
-      std::nullopt;  ///< whose shirt counts where several are in view; nothing: the largest.
-  std::optional<MarkerSighting> marker = std::nullopt;  ///< that was read in this image.
-};
 
 /// Where colours are sampled around a marker on a shirt: below its white margin, nearly as large as a face; the background beside the face as for a face
 /// (Fig. 6.3), where neither shirt nor arms are.
@@ -35,7 +20,9 @@ SamplingRegions sampling_regions(const MarkerSighting& marker);
 
 struct ShirtParameters {
   PersonColorParameters colors{};
+  PartLightParameters light{};
   int images_to_learn = 10;
+  int images_between = 15;
   double min_area = 0.15;
   double max_width = 6.0;
   double confidence = 0.7;
@@ -45,8 +32,12 @@ struct ShirtParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.section("colors", self.colors, "Colours of people");
+    visit.section("light", self.light, "How the light on a shirt is followed");
     visit.number("images_to_learn", self.images_to_learn, Range{1, 100}, "",
                  "A shirt is learned when its person's face was recognised in so many images.");
+    visit.number("images_between", self.images_between, Range{1, 1000}, "",
+                 "A shirt that was relearned, or told from its background, and is still not found is not learned again "
+                 "for so many images.");
     visit.number("min_area", self.min_area, Range{0.0, 10.0}, "",
                  "The smallest area of a shirt, relative to that of its person's face when it was last seen.");
     visit.number("max_width", self.max_width, Range{1.0, 50.0}, "",
@@ -58,27 +49,41 @@ struct ShirtParameters {
   }
 };
 
+/// \return where below a head (a face's box) the shirt of the same person may be, down to the image's lower border: what has its colours beside, above or far
+///     below is something else. Generous: a head is turned, a shirt partly covered. Ours (6.3.1, relative position).
+Box shirt_window(const Box& head, int image_height_px);
+
 /// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
-/// interest is in view, that person, however large the others are.
+/// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
+/// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt.
 ///
 /// Threads: one. Allocates when it is trained.
 class ShirtClassifier final : public Classifier<PersonImage> {
  public:
-  explicit ShirtClassifier(const ShirtParameters& parameters = {});
+  /// \param labels  of both colour parts; outlives this.
+  ShirtClassifier(ColorLabels& labels, const ShirtParameters& parameters);
+
+  /// Before the image is looked up: makes the map of shirts, when something was learned or the light has changed. \return whether it did.
+  bool prepare();
 
   std::optional<Classification> classify(const PersonImage& input) override;
   /// Relearns the shirt below the face or under the marker of the same input (6.2.4); without either, or for a stranger, nothing is learned.
   void train(Label label, std::optional<Label> mistaken_for) override;
+  /// What the last classify() found with the colours of the shirt, and not below its person's head, is a negative sample from now on (6.3.1): the head is
+  /// seen. Nothing happens where there was no such thing, or where it was done lately.
+  void learn_negative();
 
   /// Counts the images in which the same person's marker or face is recognised, and learns the shirt under it after so many in a row. A marker that is
   /// the person's comes before a face.
   void observe(const PersonImage& input);
   void forget(Label person);
 
-  /// \return the shirt that was found last.
+  /// \return the shirt that was found last; empty: none in the last image.
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] std::size_t people() const { return colors_.people(); }
   [[nodiscard]] bool knows(Label person) const { return colors_.knows(person); }
+  /// \return the light under which a person's shirt is looked for; nothing: it is not known.
+  [[nodiscard]] std::optional<color::Light> light_of(Label person) const { return light_.of(person); }
 
  private:
   /// Who says whose a shirt is, and where it is then.
@@ -90,18 +95,30 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   static std::optional<Teacher> teacher_of(const PersonImage& input);
   void learn(const PersonImage& input, const Teacher& teacher);
   [[nodiscard]] bool is_plausible(const Box& shirt, double area_px2) const;
+  std::optional<Label> find(const PersonImage& input);
+  bool find_below(const PersonHead& head, int image_height_px);
+  void found(const PersonImage& input, Label person);
+  void lost(const PersonImage& input);
 
   ShirtParameters parameters_;
+  ColorLabels& labels_;
   PersonColors colors_;
+  PartLight light_;
   imaging::LabelTable map_;
-  bool map_is_due_ = true;  // something was learned since it was made
-  imaging::ReducedImage reduced_;
+  bool map_is_due_ = true;  // something was learned since it was made, or the light has changed
   BlobFinder blobs_;
   PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
   std::optional<Box> last_face_;  // of a recognised person, or where it would be by the marker
   std::optional<Label> seen_;     // in the images before this one
   int seen_images_ = 0;
   Box box_;
+  Box elsewhere_;  // has the colours of the person whose head is known, and is not below it; empty: nothing has
+  std::optional<Label> person_;  // whose shirt was found last, and where
+  Box place_;
+  int missed_ = 0;          // images since then
+  bool supposed_ = false;   // the map is of a light that is only supposed
+  int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
+  int since_negative_ = 0;  // images since negative samples were learned; 0: never
 };
 
 }  // namespace cgsr::person

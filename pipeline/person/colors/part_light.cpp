@@ -1,0 +1,122 @@
+#include "pipeline/person/colors/part_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace cgsr::person {
+namespace {
+
+bool differs(const color::Light& a, const color::Light& b, double share) {
+  const auto far = [share](double one, double other) { return std::abs(one - other) > share * other; };
+  return far(a.r, b.r) || far(a.g, b.g) || far(a.b, b.b);
+}
+
+constexpr double kDarkest = 0.02;  // of a channel: below, a ratio says nothing
+
+color::Light change_of(const imaging::Rgb& now, const imaging::Rgb& then) {
+  const auto ratio = [](double a, double b) { return std::max(a, kDarkest) / std::max(b, kDarkest); };
+  return {ratio(now.r, then.r), ratio(now.g, then.g), ratio(now.b, then.b)};
+}
+
+constexpr color::Light kNoChange{1.0, 1.0, 1.0};
+
+}  // namespace
+
+PartLight::Part* PartLight::find(Label person) {
+  const auto found = std::ranges::find(parts_, person, &Part::person);
+  return found == parts_.end() ? nullptr : &*found;
+}
+
+void PartLight::learn(Label person, const color::Light& assumed) {
+  forget(person);
+  parts_.push_back({.person = person, .assumed = assumed, .used = assumed});
+}
+
+void PartLight::forget(Label person) {
+  std::erase_if(parts_, [person](const Part& part) { return part.person == person; });
+}
+
+// Nothing: no light, or none that changed both alike, explains what is seen; or nothing has changed.
+std::optional<color::Light> PartLight::light_by(const Part& part, const PartColors& now) const {
+  constexpr double kMeasured = 0.04;  // how well two means are alike where nothing changes
+  const color::Light change = change_of(now.part, part.colors->part);
+  const color::Light beside = change_of(now.beside, part.colors->beside);
+  const std::array log_change{std::log(change.r), std::log(change.g), std::log(change.b)};
+  const std::array log_beside{std::log(beside.r), std::log(beside.g), std::log(beside.b)};
+  double largest = 0.0, apart = 0.0;
+  for (std::size_t channel = 0; channel < log_change.size(); ++channel) {
+    largest = std::max(largest, std::abs(log_change[channel]));
+    apart = std::max(apart, std::abs(log_change[channel] - log_beside[channel]));
+  }
+  if (largest < parameters_.min_change || apart > std::max(kMeasured, parameters_.agreement * largest))
+    return std::nullopt;
+  const color::Light light = color::lit(part.used, change);
+  const color::Light gain = change_of(light, part.assumed);
+  const auto [least, most] = std::minmax({gain.r, gain.g, gain.b});
+  const bool plausible =
+      most <= parameters_.max_gain && least >= 1.0 / parameters_.max_gain && most <= parameters_.max_tint * least;
+  return plausible ? std::optional(light) : std::nullopt;
+}
+
+// While the shirt looks as it did the light is the same, whatever it stands before by now.
+bool PartLight::found(Label person, const PartColors& colors) {
+  Part* part = find(person);
+  if (part == nullptr) return false;
+  if (!part->colors || part->before) part->colors = colors;
+  part->before.reset();
+  if (const auto light = light_by(*part, colors)) {
+    part->used = *light;
+    part->colors = colors;
+    return true;
+  }
+  if (!differs(change_of(colors.part, part->colors->part), kNoChange, parameters_.min_change / 2))
+    part->colors->beside = colors.beside;
+  return false;
+}
+
+bool PartLight::suppose(Label person, const PartColors& now) {
+  Part* part = find(person);
+  if (part == nullptr || !part->colors) return false;
+  const auto light = light_by(*part, now);
+  if (!light) return false;
+  part->before = part->used;
+  part->used = *light;
+  return true;
+}
+
+void PartLight::take_back(Label person) {
+  Part* part = find(person);
+  if (part == nullptr || !part->before) return;
+  part->used = *part->before;
+  part->before.reset();
+}
+
+std::optional<color::Light> PartLight::of(Label person) const {
+  const auto found = std::ranges::find(parts_, person, &Part::person);
+  return found == parts_.end() ? std::nullopt : std::optional(found->used);
+}
+
+std::optional<imaging::Rgb> mean_color(const ImageView& image, const Box& region) {
+  constexpr int kDark = 30, kWhite = 230;  // of luma, as the camera codes it
+  constexpr int kLeast = 12;
+  constexpr int kStep = 4;
+  if (image.empty() || image.format != PixelFormat::kYuyv) return std::nullopt;
+  const Box inside = intersection(region, {0.0, 0.0, double(image.width_px), double(image.height_px)});
+  double sum_y = 0.0, sum_u = 0.0, sum_v = 0.0;
+  int count = 0;
+  for (int y = static_cast<int>(inside.y); y < static_cast<int>(inside.y + inside.height); y += kStep) {
+    for (int x = static_cast<int>(inside.x) & ~1; x < static_cast<int>(inside.x + inside.width); x += kStep) {
+      const std::uint8_t* pixel = image.row(y) + std::ptrdiff_t{2} * x;
+      if (pixel[0] < kDark || pixel[0] > kWhite) continue;
+      sum_y += pixel[0], sum_u += pixel[1], sum_v += pixel[3];
+      ++count;
+    }
+  }
+  if (count < kLeast) return std::nullopt;
+  return imaging::rgb_of_yuv(sum_y / count, sum_u / count, sum_v / count);
+}
+
+}  // namespace cgsr::person
