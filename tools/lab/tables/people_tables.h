@@ -12,6 +12,9 @@ Result<Report> figure_6_7(const Setting& setting);
 /// Who Is Who in a line (6.4.1.2): four people who are enrolled and a stranger.
 Result<Report> who_is_who(const Setting& setting);
 
+/// Where people are hard to tell (6.2.4, 6.3): exchanged shirts, a white shirt at a white wall, changing light, crossing people, a dark face.
+Result<Report> people_cases(const Setting& setting);
+
 /// All of sim-people-line, hashed.
 Result<std::string> people_line_robot_hash(const Setting& setting);
 

@@ -26,6 +26,7 @@ namespace {
 constexpr std::size_t kKnown = 4, kPeople = 5;
 constexpr double kRobot_m = 0.8;  // where the arena's robot stands
 constexpr double kSpacing_m = 0.7;
+constexpr int kNothing = -1;
 
 /// Five people in a line, from left to right; who is enrolled has his number, the stranger 0.
 struct Line {
@@ -70,7 +71,8 @@ Line draw_line(std::uint64_t seed) {
 struct Told {
   int right = 0, known_as_stranger = 0, known_as_other = 0, known_unseen = 0;
   bool stranger_as_known = false, stranger_unseen = false;
-  int too_many = 0;  // told of where nobody stands
+  int too_many = 0;                 // told of where nobody stands
+  std::array<int, kPeople> said{};  // from the left; kNothing: nothing was told of the place
 };
 
 /// \return the place of the line whose bearing is nearest, from the left.
@@ -86,10 +88,9 @@ std::size_t place_at(double bearing_deg) {
 }
 
 Told compare(const Line& line, const nlohmann::json& run) {
-  constexpr int kNothing = -1;
-  std::array<int, kPeople> said{};
-  said.fill(kNothing);
   Told told;
+  auto& said = told.said;
+  said.fill(kNothing);
   for (const auto& event : run.at("events")) {
     if (event.at("source") != "says") continue;
     const auto& numbers = event.at("numbers");
@@ -124,6 +125,17 @@ Result<Told> look_along(const TableFolder& folder, const std::string& shipped, s
                                 json);
   if (!run) return tl::unexpected(run.error());
   return compare(line, *run);
+}
+
+/// A line of which something wrong was told, for whoever wants to look at it.
+std::string describe(std::uint64_t seed, const Line& line, const Told& told) {
+  const auto words = [](const std::array<int, kPeople>& numbers) {
+    std::string all;
+    for (const int number : numbers)
+      all += number == kNothing ? " -" : number == 0 ? " stranger" : fmt::format(" {}", number);
+    return all;
+  };
+  return fmt::format("Seed {}: there stand{}; told was{}.", seed, words(line.numbers), words(told.said));
 }
 
 void add_rows(const std::vector<Told>& lines, std::uint64_t seed, Report& report) {
@@ -161,6 +173,7 @@ Result<Report> who_is_who(const Setting& setting) {
   if (!arena) return tl::unexpected(arena.error());
   Report report;
   std::vector<Told> lines;
+  std::vector<std::string> wrong;
   int refused = 0;
   for (int i = 0; i < setting.trials; ++i) {
     setting.progress(fmt::format("who is who, line {} of {}", i + 1, setting.trials));
@@ -176,6 +189,7 @@ Result<Report> who_is_who(const Setting& setting) {
     refused += *turned_away;
     auto told = look_along(folder, shipped, seed, line);
     if (!told) return tl::unexpected(told.error());
+    if (told->right < static_cast<int>(kPeople)) wrong.push_back(describe(seed, line, *told));
     lines.push_back(*told);
   }
   report.title = fmt::format("who is who in a line of four known people and a stranger, {} lines", setting.trials);
@@ -188,6 +202,7 @@ Result<Report> who_is_who(const Setting& setting) {
       "The dissertation's robot named four of five right (6.4.1.2).",
       fmt::format("The simulator has {} faces; every line takes five of them. Intervals are over lines.",
                   sim::kIdentities)};
+  report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
 }
 
