@@ -29,7 +29,7 @@ struct LabelImage {
   [[nodiscard]] bool empty() const { return width_px <= 0 || height_px <= 0; }
   [[nodiscard]] const std::uint16_t* row(int y) const { return labels + std::ptrdiff_t{y} * stride; }
   [[nodiscard]] std::uint16_t at(int x, int y) const { return static_cast<std::uint16_t>(row(y)[x] >> shift & mask); }
-  /// \param box  in pixels of this image.  \return what lies within both; blobs that are found in it are in its own pixels.
+  /// \param box  in pixels of this image.  \return what lies within both; blobs that are found in it are in pixels of the part.
   [[nodiscard]] LabelImage within(const Box& box) const;
   /// \return the left upper corner of within(box).
   [[nodiscard]] std::pair<int, int> corner_of(const Box& box) const;

@@ -22,7 +22,7 @@ struct PersonHead {
   Box box;  ///< as a face's, in pixels of the image.
 };
 
-/// What the classifiers of a person look at.
+/// What the classifiers of a person look at (6.2, 6.3).
 struct PersonImage {
   ImageView image;  ///< YUYV, of at most the size that the tracker was made for.
   std::optional<FaceSighting> face = std::nullopt;
