@@ -4,6 +4,7 @@
 #include <array>
 
 #include "tools/lab/configurations.h"
+#include "tools/lab/rooms.h"
 #include "tools/lab/source_path.h"
 #include "tools/lab/sources.h"
 #include "tools/lab/tables/faces_caltech.h"
@@ -12,24 +13,6 @@
 
 namespace cgsr::lab {
 namespace {
-
-constexpr std::array<std::string_view, 6> kColorRooms{"pipeline/color",     "pipeline/imaging", "tools/lab/scenes",
-                                                      "tools/lab/ours.cpp", "pipeline/stages",  "pipeline/runtime"};
-constexpr std::array<std::string_view, 10> kLocalizationRooms{
-    "pipeline/localization", "pipeline/render",     "pipeline/world",         "pipeline/geometry", "pipeline/imaging",
-    "hal/sim/render",        "hal/sim/calibration", "tools/lab/localization", "pipeline/stages",   "pipeline/runtime"};
-constexpr std::array<std::string_view, 9> kLampRooms{
-    "pipeline/illumination", "pipeline/geometry",   "pipeline/imaging",
-    "hal/sim/render",        "hal/sim/calibration", "tools/lab/probe_room.cpp",
-    "pipeline/stages",       "pipeline/runtime",    "tools/lab/probes_trial.cpp"};
-constexpr std::array<std::string_view, 9> kShadeRooms{
-    "pipeline/render",        "pipeline/world",  "pipeline/geometry", "hal/sim/render",           "hal/sim/calibration",
-    "tools/lab/localization", "pipeline/stages", "pipeline/runtime",  "tools/lab/shade_trial.cpp"};
-constexpr std::array<std::string_view, 9> kBallRooms{
-    "pipeline/color",          "pipeline/imaging", "pipeline/render",  "pipeline/geometry",        "hal/sim/render",
-    "tools/lab/ball_film.cpp", "pipeline/stages",  "pipeline/runtime", "tools/lab/shade_trial.cpp"};
-constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
-constexpr std::array<std::string_view, 4> kWholeRobot{"pipeline", "hal/sim", "hal/rmp", "config/scenarios"};
 
 // In the order of the chapters. The trials are those that fit an hour together, counting included.
 constexpr std::array kExperiments{
