@@ -17,6 +17,12 @@ if(CGSR_SANITIZE)
   endif()
 endif()
 
+# Only for libFuzzer's programs (tools/fuzz): every branch is counted. The compiler is another one there, whose warnings are not those that are held.
+option(CGSR_FUZZ "build the programs of tests/fuzz; the compiler is clang" OFF)
+if(CGSR_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link -Wno-error -Wno-unknown-warning-option)
+endif()
+
 # mold links in a tenth of the time; whoever has it not gets the system's linker. Before 2.4 it may end a page with thread-local variables and begin the
 # next with what is made read-only after relocation; the loader then refuses the program ("cannot apply additional memory protection", by a
 # chance of 7 in 4096 for each link, rui314/mold#1151). Variables that are aligned to 64 bytes cannot lie so; tests/tools/relro_test.py looks.
