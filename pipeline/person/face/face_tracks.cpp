@@ -1,11 +1,28 @@
 #include "pipeline/person/face/face_tracks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
 
 namespace cgsr::person {
+namespace {
+
+// A comparison's confidence is 1 - exp(-x) / 2, x its distance from the threshold (FaceGallery::identify). The mean of n comparisons is surer by the root
+// of n; those of one face are not independent of each other, so that their number is bounded.
+double evidence_of(double confidence) {
+  constexpr double kMost = 0.999;
+  return -std::log(2.0 * (1.0 - std::clamp(confidence, 0.5, kMost)));
+}
+
+double confidence_of(double evidence, int comparisons) {
+  constexpr int kMost = 16;
+  return 1.0 - 0.5 * std::exp(-evidence / comparisons * std::sqrt(std::min(comparisons, kMost)));
+}
+
+}  // namespace
+
 FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
     : detector_(std::move(detector)), parameters_(parameters) {
   tracks_.reserve(kMaxFaces);
@@ -104,8 +121,7 @@ void FaceTracks::look(const ImageView& image, WorkBudget& budget, const std::opt
 std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
   const FaceTrack* wanted = nullptr;
   for (const FaceTrack& track : tracks_) {
-    const bool due = !track.match || track.images_waited_ >= parameters_.ask_again_images;
-    if (!track.seen || !due) continue;
+    if (!track.seen || !is_due(track)) continue;
     const auto urgency = [](const FaceTrack& t) { return std::pair(!t.match, t.images_waited_); };
     if (wanted == nullptr || urgency(track) > urgency(*wanted)) wanted = &track;
   }
@@ -113,6 +129,12 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
   FaceQuestion question{wanted->number, face_crop(image, wanted->box)};
   if (question.crop.pixels.empty()) return std::nullopt;
   return question;
+}
+
+bool FaceTracks::is_due(const FaceTrack& track) const {
+  if (!track.match) return true;
+  const bool sure = track.match->confidence >= parameters_.sure;
+  return track.images_waited_ >= (sure ? parameters_.ask_again_images : parameters_.ask_again_unsure_images);
 }
 
 void FaceTracks::asked(std::uint32_t face) {
@@ -123,6 +145,9 @@ void FaceTracks::asked(std::uint32_t face) {
 void FaceTracks::hear(const FaceAnswer& answer) {
   const auto track = std::ranges::find(tracks_, answer.face, &FaceTrack::number);
   if (track == tracks_.end()) return;
+  const bool agrees = track->vote_count_ > 0 && answer.match.label == track->votes_.front().label;
+  track->agreeing_ = agrees ? track->agreeing_ + 1 : 1;
+  track->evidence_ = (agrees ? track->evidence_ : 0.0) + evidence_of(answer.match.confidence);
   std::shift_right(track->votes_.begin(), track->votes_.end(), 1);
   track->votes_.front() = answer.match;
   track->vote_count_ = std::min(track->vote_count_ + 1, FaceTrack::kVotes);
@@ -132,16 +157,11 @@ void FaceTracks::hear(const FaceAnswer& answer) {
 // The newest answer decides with those that agree with it; too few: an older agreement stands until the next answer.
 void FaceTracks::count_votes(FaceTrack& track) const {
   const auto votes = std::span(track.votes_).first(track.vote_count_);
-  int agreeing = 0;
-  double confidence = 0.0;
-  for (const FaceMatch& vote : votes) {
-    if (vote.label != votes.front().label) continue;
-    ++agreeing;
-    confidence += vote.confidence;
-  }
+  const auto agreeing =
+      std::ranges::count_if(votes, [&](const FaceMatch& vote) { return vote.label == votes.front().label; });
   if (agreeing < parameters_.min_agreeing) return;
   track.match = votes.front();
-  track.match->confidence = confidence / agreeing;
+  track.match->confidence = confidence_of(track.evidence_, track.agreeing_);
 }
 
 }  // namespace cgsr::person

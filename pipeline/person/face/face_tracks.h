@@ -17,6 +17,8 @@ struct FaceTrackParameters {
   int max_missed = 3;
   int min_agreeing = 2;
   int ask_again_images = 15;
+  int ask_again_unsure_images = 6;
+  double sure = 0.75;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -26,6 +28,11 @@ struct FaceTrackParameters {
                  "A face has a name, or is a stranger's, when so many of its last three comparisons agree.");
     visit.number("ask_again_images", self.ask_again_images, Range{1, 300}, "",
                  "A face that has a name is compared again after this many images.");
+    visit.number("ask_again_unsure_images", self.ask_again_unsure_images, Range{1, 300}, "",
+                 "After this many where it is not yet sure.");
+    visit.number("sure", self.sure, Range{0.5, 1.0}, "",
+                 "The confidence from which on a name is sure: above that of a shirt, which overrules a less sure face "
+                 "(Alg. 6.1).");
   }
 };
 
@@ -43,6 +50,8 @@ struct FaceTrack {
   static constexpr std::size_t kVotes = 3;
   std::array<FaceMatch, kVotes> votes_{};  // the last comparisons, the newest first
   std::size_t vote_count_ = 0;
+  int agreeing_ = 0;       // comparisons in a row that said the same, the newest among them
+  double evidence_ = 0.0;  // their sum, each by how far from the threshold it is
   int looks_waited_ = 0;   // since it was looked for
   int images_waited_ = 0;  // since it was compared
 };
@@ -81,6 +90,7 @@ class FaceTracks {
   void search(const ImageView& image);
   void add(const Box& face);
   void count_votes(FaceTrack& track) const;
+  [[nodiscard]] bool is_due(const FaceTrack& track) const;
   [[nodiscard]] FaceTrack* longest_waiting();
 
   FaceDetector detector_;
