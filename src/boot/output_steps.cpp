@@ -15,8 +15,7 @@ namespace cgsr::boot {
 namespace {
 
 double set_distance_m(const config::Robot& config) {
-  const bool keeps_distance =
-      config.task.kind == config::TaskKind::kFollow || config.task.kind == config::TaskKind::kPerson;
+  const bool keeps_distance = config.task.kind == config::TaskKind::kFollow || config.follows_person();
   return keeps_distance ? config.follow.distance_m : 0.0;
 }
 

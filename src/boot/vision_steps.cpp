@@ -7,6 +7,7 @@
 #include "pipeline/color/learn/model_file.h"
 #include "pipeline/localization/perceive.h"
 #include "pipeline/stages/color_stages.h"
+#include "pipeline/stages/finals_task.h"
 #include "pipeline/stages/self_mask.h"
 #include "pipeline/stages/tasks.h"
 #include "pipeline/world/load.h"
@@ -115,6 +116,10 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
   if (config.task.kind == config::TaskKind::kPerson) {
     return std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
                                                       optics_of(state), config.person.fill_light);
+  }
+  if (config.task.kind == config::TaskKind::kFinals) {
+    return std::make_unique<stages::FinalsTask>(config.task.finals, config.task.person, config.follow, config.motion,
+                                                optics_of(state), config.person.fill_light);
   }
   if (config.task.kind == config::TaskKind::kLine) {
     return std::make_unique<stages::WhoIsWhoTask>(behavior::LookAlong(config.task.line, config.motion),

@@ -125,7 +125,10 @@ struct Robot {
   }
 
   /// The task is about people who are enrolled.
-  [[nodiscard]] bool about_people() const { return task.kind == TaskKind::kPerson || task.kind == TaskKind::kLine; }
+  [[nodiscard]] bool about_people() const { return follows_person() || task.kind == TaskKind::kLine; }
+
+  /// The task is to follow somebody.
+  [[nodiscard]] bool follows_person() const { return task.kind == TaskKind::kPerson || task.kind == TaskKind::kFinals; }
 
   [[nodiscard]] bool simulated_camera() const { return camera.kind == CameraKind::kSim; }
   [[nodiscard]] bool simulated_base() const { return base.kind == BaseKind::kRmp && base.can == CanKind::kSim; }
@@ -143,15 +146,21 @@ struct Robot {
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
     if (about_people() && !person.enabled()) {
-      return "task.kind = \"person\" and \"line\" need person.identities: the file in which cgsr people enroll keeps "
+      return "task.kind = \"person\", \"line\" and \"finals\" need person.identities: the file in which cgsr people "
+             "enroll keeps "
              "who is known; \"person\" can do with person.marker.enabled instead";
     }
-    if (task.kind == TaskKind::kLine && !person.knows_faces()) {
-      return "task.kind = \"line\" needs person.identities: it tells people by their faces, not by a marker";
+    if ((task.kind == TaskKind::kLine || task.kind == TaskKind::kFinals) && !person.knows_faces()) {
+      return "task.kind = \"line\" and \"finals\" need person.identities: they tell people by their faces, not by a "
+             "marker";
     }
-    if (person.fill_light.enabled && (switches.fill_light_line.empty() || task.kind != TaskKind::kPerson)) {
-      return "person.fill_light needs switches.fill_light_line, the line of the light, and task.kind = \"person\", "
-             "which alone asks for it";
+    if (task.kind == TaskKind::kFinals && task.person.number == 0) {
+      return "task.kind = \"finals\" needs task.person.number, the number of the person in the identities file: who is "
+             "to be followed, and who is a stranger?";
+    }
+    if (person.fill_light.enabled && (switches.fill_light_line.empty() || !follows_person())) {
+      return "person.fill_light needs switches.fill_light_line, the line of the light, and task.kind = \"person\" "
+             "or \"finals\", which alone ask for it";
     }
     if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
       return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "

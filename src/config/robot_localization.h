@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "pipeline/behavior/finals_parameters.h"
 #include "pipeline/behavior/follow_person_parameters.h"
 #include "pipeline/behavior/look_along_parameters.h"
 #include "pipeline/behavior/route.h"
@@ -78,11 +79,12 @@ enum class TaskKind : std::uint8_t {
   kLamp,    ///< Algorithm 5.2: find the lamp, back off, track with masks.
   kPerson,  ///< keep at a distance from a person who is enrolled (6.4).
   kLine,    ///< tell who is who in a line of people (6.4.1.2).
+  kFinals,  ///< follow a person, tell a stranger in the same shirt and a change of shirts (6.4.3).
 };
 inline constexpr std::array kTaskKindNames{
     Named<TaskKind>{"follow", TaskKind::kFollow}, Named<TaskKind>{"route", TaskKind::kRoute},
-    Named<TaskKind>{"lamp", TaskKind::kLamp}, Named<TaskKind>{"person", TaskKind::kPerson},
-    Named<TaskKind>{"line", TaskKind::kLine}};
+    Named<TaskKind>{"lamp", TaskKind::kLamp},     Named<TaskKind>{"person", TaskKind::kPerson},
+    Named<TaskKind>{"line", TaskKind::kLine},     Named<TaskKind>{"finals", TaskKind::kFinals}};
 constexpr std::string_view to_string(TaskKind kind) {
   return word_in(kTaskKindNames, kind);
 }
@@ -93,6 +95,7 @@ struct Task {
   behavior::SeekLampParameters lamp;
   behavior::FollowPersonParameters person;
   behavior::LookAlongParameters line;
+  behavior::FinalsParameters finals;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -100,11 +103,13 @@ struct Task {
         "kind", self.kind, kTaskKindNames,
         "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
         "Algorithm 5.2; these two need a map. The task person keeps at a distance from somebody who is enrolled; "
-        "line tells who is who in a line of people.");
+        "line tells who is who in a line of people; finals follows as person does, and tells strangers and changes of "
+        "shirts.");
     visit.section("route", self.route, "The places and the speed of a route");
     visit.section("lamp", self.lamp, "Exploring, locating the lamp, backing off and tracking (Alg. 5.2)");
     visit.section("person", self.person, "Whom the robot follows (6.4)");
     visit.section("line", self.line, "Looking along a line of people (6.4.1.2)");
+    visit.section("finals", self.finals, "Telling strangers and changes of shirts (6.4.3)");
   }
 };
 

@@ -269,6 +269,18 @@ constexpr std::array kExperiments{
                people_line_robot_hash,
                kWholeRobot,
                {"tools/lab/tables/who_is_who.cpp", "tools/lab/person_cast.cpp", "config/worlds/people.toml"}},
+    Experiment{"finals",
+               "The Finals: strangers in the person's shirt are noticed, the person is found again, in another shirt "
+               "or the same (6.4.3)",
+               6,
+               4,
+               true,
+               true,
+               finals,
+               people_finals_robot_hash,
+               kWholeRobot,
+               {"tools/lab/tables/finals.cpp", "tools/lab/person_cast.cpp", "tools/lab/people_script.cpp",
+                "config/worlds/people.toml"}},
 };
 
 void add_requirements(const Experiment& experiment, Report& report) {

@@ -14,8 +14,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr double kRobot_m = 0.8;  // where the arena's robot stands
-
 using Shirt = std::array<double, 3>;
 
 /// What every case draws: two people with shirts.
@@ -104,7 +102,7 @@ Case crossing_people(Random& random) {
   second.from_s = at(2.0);
   // Where the nearer covers the other neither can be asked for: their bearings are closer than a shoulder's width.
   const double walks_s = 1.4 / first.speed_mps;
-  const double bearing_0 = 0.7 / (2.9 - kRobot_m), bearing_1 = -0.6 / (2.3 - kRobot_m);
+  const double bearing_0 = 0.7 / (2.9 - kRobotStart_m), bearing_1 = -0.6 / (2.3 - kRobotStart_m);
   constexpr double kShoulders_rad = 0.32;
   const double apart = bearing_0 - bearing_1;  // goes to its negative while they walk
   const double meets_s = 5.0 + walks_s / 2.0, covered_s = walks_s * kShoulders_rad / (2.0 * apart) + 0.6;
@@ -148,13 +146,18 @@ Case draw_people_case(std::size_t kind, Random& random) {
 }
 
 std::string text_of(const Figure& figure, const std::string& name) {
-  const double to_robot_deg = 180.0 + std::atan2(figure.y_m, figure.x_m - kRobot_m) * 180.0 / std::numbers::pi;
+  const double to_robot_deg = 180.0 + std::atan2(figure.y_m, figure.x_m - kRobotStart_m) * 180.0 / std::numbers::pi;
   std::string text = fmt::format(
       "[[person]]\nname = \"{}\"\nidentity = {}\nheight_m = {:.2f}\noutfit = [{{ shirt = \"plain\", color = [{:.2f}, "
       "{:.2f}, {:.2f}] }}]\npresence = [{{ at_s = 0.0, present = {} }}, {{ at_s = {:.2f}, present = true }}, {{ at_s = "
       "{:.2f}, present = false }}]\n[person.walk]\nstop = [\n",
       name, figure.identity, figure.height_m, figure.shirt[0], figure.shirt[1], figure.shirt[2], figure.from_s <= 0.0,
       std::max(0.01, figure.from_s), figure.to_s);
+  if (figure.faces_s >= 0.0)
+    return text + fmt::format(
+                      "{{ at_m = [{0:.2f}, {1:.2f}, 0.0], wait_s = {2:.2f}, heading_deg = 0.0 }},\n{{ at_m = [{3:.2f}, "
+                      "{1:.2f}, 0.0], wait_s = 1000.0, heading_deg = {4:.1f} }}]\n",
+                      figure.x_m, figure.y_m, figure.faces_s, figure.x_m + 0.02, to_robot_deg);
   text += fmt::format("{{ at_m = [{:.2f}, {:.2f}, 0.0], wait_s = {:.2f}, heading_deg = {:.1f} }},\n", figure.x_m,
                       figure.y_m, std::min(figure.turns_s, 1000.0), to_robot_deg);
   if (figure.walks_s < 0.0)

@@ -21,8 +21,12 @@ struct Figure {
   double x_m = 2.3, y_m = 0.0;
   double from_s = 0.0, to_s = 1000.0;                    // of the whole run
   double turns_s = 1000.0;                               // away, so long after the run's begin
+  double faces_s = -1.0;                                 // shows the back until then; negative: as turns_s says
   double to_y_m = 0.0, walks_s = -1.0, speed_mps = 0.4;  // sideways, from then on; negative: he stands
 };
+
+/// The arena's robot stands here and looks along x.
+inline constexpr double kRobotStart_m = 0.8;
 
 /// From when on the script says that a person, or nobody, is visible. Ends with the next.
 struct Phase {

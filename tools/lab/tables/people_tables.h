@@ -15,6 +15,12 @@ Result<Report> who_is_who(const Setting& setting);
 /// Where people are hard to tell (6.2.4, 6.3): exchanged shirts, a white shirt at a white wall, changing light, crossing people, a dark face.
 Result<Report> people_cases(const Setting& setting);
 
+/// The Finals (6.4.3): a person who changes shirts, and strangers in the same ones.
+Result<Report> finals(const Setting& setting);
+
+/// All of sim-people-finals, hashed.
+Result<std::string> people_finals_robot_hash(const Setting& setting);
+
 /// All of sim-people-line, hashed.
 Result<std::string> people_line_robot_hash(const Setting& setting);
 

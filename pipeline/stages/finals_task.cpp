@@ -1,0 +1,69 @@
+#include "pipeline/stages/finals_task.h"
+
+namespace cgsr::stages {
+
+std::string_view to_string(FinalsState state) {
+  switch (state) {
+    case FinalsState::kMeeting:
+      return "meeting the person";
+    case FinalsState::kWith:
+      return "with the person";
+    case FinalsState::kSeeking:
+      return "looking for the person";
+  }
+  return "unknown";
+}
+
+FinalsTask::FinalsTask(const behavior::FinalsParameters& finals, const behavior::FollowPersonParameters& person,
+                       const behavior::FollowParameters& follow, const behavior::DriveLimits& limits,
+                       const geometry::Camera& camera, const behavior::FillLightParameters& light)
+    : parameters_(finals),
+      person_(person.number),
+      follow_(person, follow, limits, camera, light),
+      shirt_(finals.images_of_shirt) {}
+
+void FinalsTask::say(std::string_view words, Events& events) const {
+  Event event{"says", words, to_string(state_)};
+  event.numbers[event.number_count++] = {"number", static_cast<double>(person_), ""};
+  if (const auto change = shirt_.change(); change && state_ == FinalsState::kWith)
+    event.numbers[event.number_count++] = {"shirt", *change, ""};
+  events.add(event);
+}
+
+// The shirt below a face that was just found is learned anew in the same images; what was known of it before is kept here alone.
+void FinalsTask::see_person(const person::PersonSighting& who, const ImageView& image, Events& events) {
+  stranger_images_ = 0;
+  ++person_images_;
+  shirt_.see(image, who.box);
+  if (state_ != FinalsState::kWith && person_images_ >= parameters_.images_to_be_sure) {
+    const bool again = state_ == FinalsState::kSeeking;
+    state_ = FinalsState::kWith;
+    shirt_told_ = !again;
+    say(again ? "I have found you again" : "I know you, and follow you", events);
+  }
+  const auto change = shirt_.change();
+  if (shirt_told_ || !change) return;
+  shirt_told_ = true;
+  say(*change > parameters_.max_same_shirt ? "you wear another shirt" : "you wear the same shirt", events);
+}
+
+void FinalsTask::see_stranger(const person::PersonSighting& /*who*/, Events& events) {
+  person_images_ = 0;
+  if (++stranger_images_ != parameters_.images_to_be_sure || state_ != FinalsState::kWith) return;
+  state_ = FinalsState::kSeeking;
+  say("you are somebody else: I have lost the person whom I follow", events);
+  shirt_.begin_anew();
+}
+
+// Images in which no face is looked for, or none is found, say nothing against what was seen before.
+Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
+  Decision decision = follow_.decide(frame, image, elapsed);
+  const IdentifiedPeople* const people = frame.people.within(Duration::zero());
+  if (people == nullptr || people->person.source != person::PersonSource::kFace) return decision;
+  const person::PersonSighting& who = people->person;
+  if (who.person == person_) see_person(who, image, decision.events);
+  if (who.person == person::kStranger) see_stranger(who, decision.events);
+  return decision;
+}
+
+}  // namespace cgsr::stages
