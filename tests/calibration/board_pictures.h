@@ -63,33 +63,19 @@ inline std::vector<cv::Point2f> corners_of(const geometry::Pose& X_CB, const Boa
   return out;
 }
 
-/// A grey image of the board. \param margin  its white border, in squares. \param around  the grey beside it.
-inline cv::Mat picture_of(const geometry::Pose& X_CB, const Board& board, const geometry::Camera& camera,
-                          std::mt19937& random, double margin = 0.7, double around = 110.0) {
-  constexpr int kSamples = 3;
-  cv::Mat picture(camera.height_px, camera.width_px, CV_8U);
-  const geometry::Pose X_BC = X_CB.inverse();
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      double sum = 0.0;
-      for (int k = 0; k < kSamples * kSamples; ++k) {
-        const Eigen::Vector2d at(x + (k % kSamples - 1) / 3.0, y + (static_cast<int>(k / kSamples) - 1) / 3.0);
-        const Eigen::Vector2d ideal = camera.ideal_of(at);
-        const Eigen::Vector3d ray = X_BC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0);
-        const double far = -X_BC.translation().z() / ray.z();
-        const Eigen::Vector3d p = X_BC.translation() + far * ray;
-        const double u = p.x() / board.square_m;
-        const double v = p.y() / board.square_m;
-        const bool on_paper = far > 0.0 && u > -1.0 - margin && v > -1.0 - margin && u < board.columns + margin &&
-                              v < board.rows + margin;
-        const bool on_squares = on_paper && u > -1.0 && v > -1.0 && u < board.columns && v < board.rows;
-        const bool black = on_squares && (static_cast<int>(std::floor(u)) + static_cast<int>(std::floor(v))) % 2 == 0;
-        sum += !on_paper ? around : black ? 45.0 : 200.0;
-      }
-      picture.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(sum / (kSamples * kSamples) + normal(random));
-    }
-  }
-  return picture;
-}
+/// Grey images of boards, as one camera takes them: its rays are computed once.
+class Photographs {
+ public:
+  explicit Photographs(const geometry::Camera& camera);
+
+  /// \param margin  the board's white border, in squares. \param around  the grey beside it.
+  [[nodiscard]] cv::Mat of(const geometry::Pose& X_CB, const Board& board, std::mt19937& random, double margin = 0.7,
+                           double around = 110.0) const;
+
+ private:
+  int width_px_;
+  int height_px_;
+  std::vector<Eigen::Vector2d> rays_;  // nine of each pixel, (x, y, 1) in the camera's frame
+};
 
 }  // namespace cgsr::calibration::testing

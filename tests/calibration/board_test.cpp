@@ -11,6 +11,7 @@ TEST(BoardGolden, CornersAreFoundInTheBoardsOwnOrderHoweverItIsTurned) {
   std::mt19937 random(1);
   const Board board{7, 4, 0.03};
   const geometry::Camera camera = testing::true_camera();
+  const testing::Photographs photographs(camera);
   for (const double turn : {0.0, 1.5708, 3.1416}) {
     geometry::Pose X_CB = testing::board_before_camera(random, board, camera, 0.5, 0.5, 0.45);
     const Eigen::Vector3d middle_B(0.5 * (board.columns - 1) * board.square_m, 0.5 * (board.rows - 1) * board.square_m,
@@ -20,7 +21,7 @@ TEST(BoardGolden, CornersAreFoundInTheBoardsOwnOrderHoweverItIsTurned) {
     X_CB.translation() = middle_C - X_CB.linear() * middle_B;
     const auto truth = testing::corners_of(X_CB, board, camera);
     ASSERT_FALSE(truth.empty());
-    const auto found = find_board(testing::picture_of(X_CB, board, camera, random), board);
+    const auto found = find_board(photographs.of(X_CB, board, random), board);
     ASSERT_TRUE(found) << turn;
     double squares = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -36,13 +37,14 @@ TEST(BoardGolden, IsFoundWithoutAWhiteMargin) {
   std::mt19937 random(1);
   const Board board{7, 4, 0.03};
   const geometry::Camera camera = testing::true_camera();
+  const testing::Photographs photographs(camera);
   for (int trial = 0; trial < 3; ++trial) {
     const geometry::Pose X_CB = testing::board_before_camera(random, board, camera, 0.5, 0.5, 0.45);
     const auto truth = testing::corners_of(X_CB, board, camera);
     ASSERT_FALSE(truth.empty());
     constexpr double kMargin = 0.0;
     constexpr double kTable = 20.0;
-    const auto found = find_board(testing::picture_of(X_CB, board, camera, random, kMargin, kTable), board);
+    const auto found = find_board(photographs.of(X_CB, board, random, kMargin, kTable), board);
     ASSERT_TRUE(found) << trial;
     for (std::size_t i = 0; i < truth.size(); ++i) EXPECT_LT(cv::norm((*found)[i] - truth[i]), 0.5) << trial;
   }

@@ -26,13 +26,14 @@ void write_boards(const std::string& folder, int count) {
   std::mt19937 random(5);
   std::filesystem::create_directories(folder);
   const geometry::Camera camera = calibration::testing::true_camera();
+  const calibration::testing::Photographs photographs(camera);
   for (int i = 0; i < count;) {
     const double part_x = 0.3 + 0.2 * (i % 3);
     const double part_y = 0.35 + 0.15 * ((i / 3) % 3);
     const auto X_CB =
         calibration::testing::board_before_camera(random, kBoard, camera, part_x, part_y, 0.45 + 0.02 * i);
     if (calibration::testing::corners_of(X_CB, kBoard, camera).empty()) continue;
-    cv::imwrite(folder + fmt::format("/{:03}.png", i), calibration::testing::picture_of(X_CB, kBoard, camera, random));
+    cv::imwrite(folder + fmt::format("/{:03}.png", i), photographs.of(X_CB, kBoard, random));
     ++i;
   }
 }
@@ -69,7 +70,8 @@ TEST(CalibrateCommand, MountFromABoardOnTheFloor) {
   const geometry::Pose X_RB = calibration::board_on_floor(1.1, 0.2, -1.5707963);
   const geometry::Camera camera = calibration::testing::true_camera();
   ASSERT_FALSE(calibration::testing::corners_of(X_RC.inverse() * X_RB, board, camera).empty());
-  cv::imwrite(scratch / "board.png", calibration::testing::picture_of(X_RC.inverse() * X_RB, board, camera, random));
+  const calibration::testing::Photographs photographs(camera);
+  cv::imwrite(scratch / "board.png", photographs.of(X_RC.inverse() * X_RB, board, random));
   testing::write_text(scratch / "camera.yaml", camera_as_yaml(camera, "camera"));
   const auto run = run_cgsr({"calibrate", "mount", "--input", scratch / "board.png", "--board", "7x4", "--square",
                              "0.06", "--camera", scratch / "camera.yaml", "--board-at", "1.1,0.2,-90", "--output",
