@@ -1,10 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -68,53 +66,8 @@ struct Drawing {
   std::function<double(const Eigen::Vector2d&)> darker = [](const Eigen::Vector2d&) { return 0.0; };
 };
 
-inline constexpr int kFirstRowOfInterest = 262;  // above it the shipped camera sees neither board nor cone
-
-/// Draws by casting nine rays a pixel: slow, plain, and without the pipeline's projection.
-inline DrawnImage draw(const Board& board, const geometry::Pose& X_BC, const Drawing& drawing) {
-  DrawnImage image{board.camera.width_px, board.camera.height_px, {}};
-  image.grey.resize(static_cast<std::size_t>(image.width_px * image.height_px));
-  std::mt19937 random(drawing.seed);
-  const int cones = drawing.right_cone ? 2 : 1;
-  const auto cone_covers = [&](const Eigen::Vector3d& from, const Eigen::Vector2d& p_B) {
-    for (int i = 0; i < cones; ++i) {
-      const Probe& probe = board.probe[static_cast<std::size_t>(i)];
-      const auto outline = outline_of(probe.foot_B, probe.radius_m, cast(from, probe.p_BA));
-      if (within(outline, probe.foot_B, probe.radius_m, p_B, 0.0)) return true;
-    }
-    return false;
-  };
-  for (int y = 0; y < image.height_px; ++y) {
-    for (int x = 0; x < image.width_px; ++x) {
-      double sum = 0.0;
-      const int rays = y < kFirstRowOfInterest ? 0 : 9;
-      if (rays == 0) sum = drawing.room_level;
-      for (int sub = 0; sub < rays; ++sub) {
-        const Eigen::Vector2d pixel(x + (sub % 3 - 1) / 3.0, y + (sub / 3 - 1) / 3.0);
-        const Eigen::Vector2d ideal = board.camera.ideal_of(pixel);
-        const Eigen::Vector3d ray = X_BC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0);
-        double value = drawing.room_level;
-        if (ray.z() < -1e-6) {
-          const Eigen::Vector3d meets = X_BC.translation() - ray * (X_BC.translation().z() / ray.z());
-          const Eigen::Vector2d p_B = meets.head<2>();
-          const bool on_board = std::abs(p_B.x()) < board.depth_m / 2 && std::abs(p_B.y()) < board.width_m / 2;
-          if (cone_covers(X_BC.translation(), p_B)) {
-            value = drawing.cone_level;
-          } else if (on_board) {
-            value = drawing.board_level - drawing.darker(p_B);
-            for (const auto& lamp : drawing.lamps_B) value -= cone_covers(lamp, p_B) ? drawing.shadow_level : 0.0;
-          }
-        }
-        sum += value / 9.0;
-      }
-      double noise = -6.0;
-      for (int i = 0; i < 12; ++i) noise += random() / 4294967296.0;
-      const double level = std::clamp(sum + drawing.noise * noise, 0.0, 255.0);
-      image.grey[static_cast<std::size_t>(y * image.width_px + x)] = static_cast<std::uint8_t>(std::lround(level));
-    }
-  }
-  return image;
-}
+/// Draws by casting nine rays a pixel: plain, and without the pipeline's projection. Threads: one at a time, it keeps the camera's rays.
+DrawnImage draw(const Board& board, const geometry::Pose& X_BC, const Drawing& drawing);
 
 /// A lamp above the board from where light comes at an angle from the vertical.
 inline Eigen::Vector3d lamp_at(double angle_deg, double around_deg, double height_m = 1.85) {
