@@ -170,7 +170,7 @@ TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
   EXPECT_GE(first.begin()->second, 40);
   const auto named = numbers_in({"people", "follow", "--config", robot(scenario), "--name", "Dora"});
   EXPECT_GE(named.contains("2") ? named.at("2") : 0, 40);
-  EXPECT_LE(named.contains("1") ? named.at("1") : 0, 15) << "before Dora's face has a name";
+  EXPECT_LE(named.contains("1") ? named.at("1") : 0, 11) << "before Dora's face has a name";
   const auto nobody = run_cgsr({"people", "follow", "--config", robot(scenario), "--name", "Emil"});
   EXPECT_NE(nobody.exit_code, 0);
   EXPECT_THAT(nobody.errors, HasSubstr("there is no 'Emil'"));
