@@ -30,29 +30,32 @@ void FinalsTask::say(std::string_view words, Events& events) const {
   events.add(event);
 }
 
-// The shirt below a face that was just found is learned anew in the same images; what was known of it before is kept here alone.
+// Whoever was named in too few images in a row may have been somebody else: his shirt is not looked at.
 void FinalsTask::see_person(const person::PersonSighting& who, const ImageView& image, Events& events) {
-  stranger_images_ = 0;
-  ++person_images_;
-  shirt_.see(image, who.box);
-  if (state_ != FinalsState::kWith && person_images_ >= parameters_.images_to_be_sure) {
+  other_images_ = 0;
+  if (++person_images_ < parameters_.images_to_be_sure && state_ != FinalsState::kWith) return;
+  if (state_ != FinalsState::kWith) {
     const bool again = state_ == FinalsState::kSeeking;
     state_ = FinalsState::kWith;
     shirt_told_ = !again;
+    follow_.follow_by_primary_only(false);
     say(again ? "I have found you again" : "I know you, and follow you", events);
   }
+  shirt_.see(image, who.box);
   const auto change = shirt_.change();
   if (shirt_told_ || !change) return;
   shirt_told_ = true;
   say(*change > parameters_.max_same_shirt ? "you wear another shirt" : "you wear the same shirt", events);
 }
 
-void FinalsTask::see_stranger(const person::PersonSighting& /*who*/, Events& events) {
+// Who was followed wears the person's shirt, and may turn the back again: until the person's face is seen the shirt proves nothing.
+void FinalsTask::see_somebody_else(Events& events) {
   person_images_ = 0;
-  if (++stranger_images_ != parameters_.images_to_be_sure || state_ != FinalsState::kWith) return;
+  if (++other_images_ < parameters_.images_to_be_sure || state_ != FinalsState::kWith) return;
   state_ = FinalsState::kSeeking;
   say("you are somebody else: I have lost the person whom I follow", events);
   shirt_.begin_anew();
+  follow_.follow_by_primary_only(true);
 }
 
 // Images in which no face is looked for, or none is found, say nothing against what was seen before.
@@ -60,9 +63,11 @@ Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Du
   Decision decision = follow_.decide(frame, image, elapsed);
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
   if (people == nullptr || people->person.source != person::PersonSource::kFace) return decision;
-  const person::PersonSighting& who = people->person;
-  if (who.person == person_) see_person(who, image, decision.events);
-  if (who.person == person::kStranger) see_stranger(who, decision.events);
+  if (people->person.person == person_) {
+    see_person(people->person, image, decision.events);
+  } else {
+    see_somebody_else(decision.events);
+  }
   return decision;
 }
 

@@ -17,9 +17,9 @@ enum class FinalsState : std::uint8_t {
 };
 std::string_view to_string(FinalsState state);
 
-/// The demonstration of the Finals (6.4.3): follows a person by face and shirt as FollowPersonTask does; tells when it sees that whom it follows is a
-/// stranger, turns to look for the person, and tells when it has found the person again and whether the shirt is another one. What is said is an event of
-/// the source `says`, with numbers, never a name.
+/// The demonstration of the Finals (6.4.3): follows a person by face and shirt as FollowPersonTask does; tells when it sees that whom it follows is
+/// somebody else, a stranger or another one who is enrolled; turns then to look for the person, whom the face alone proves; and tells when it has found the
+/// person again and whether the shirt is another one. What is said is an event of the source `says`, with numbers, never a name.
 class FinalsTask final : public Task {
  public:
   /// \param person  the number in the identities file, > 0.  \param camera  of the images that come.  \param light  as FollowPersonTask's.
@@ -33,7 +33,7 @@ class FinalsTask final : public Task {
 
  private:
   void see_person(const person::PersonSighting& who, const ImageView& image, Events& events);
-  void see_stranger(const person::PersonSighting& who, Events& events);
+  void see_somebody_else(Events& events);
   void say(std::string_view words, Events& events) const;
 
   behavior::FinalsParameters parameters_;
@@ -41,8 +41,8 @@ class FinalsTask final : public Task {
   FollowPersonTask follow_;
   person::ShirtMemory shirt_;
   FinalsState state_ = FinalsState::kMeeting;
-  int person_images_ = 0;    // in a row with the person's face
-  int stranger_images_ = 0;  // in a row with a stranger's
+  int person_images_ = 0;  // in a row, of those with a face, with the person's
+  int other_images_ = 0;   // with somebody else's
   bool shirt_told_ = true;
 };
 

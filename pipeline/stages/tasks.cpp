@@ -119,7 +119,8 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if (person_ == person::kStranger && enrolled) person_ = *who.person;
   if (last_) last_->age += elapsed;
   if (who.person) last_.reset();
-  if (enrolled && who.person == person_) last_ = sighting_of(who, image);
+  const bool primary = who.source == person::PersonSource::kFace || who.source == person::PersonSource::kMarker;
+  if (enrolled && who.person == person_ && (primary || !by_primary_only_)) last_ = sighting_of(who, image);
   const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
   std::string_view reason = behavior::to_string(follow.reason);
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";

@@ -40,6 +40,9 @@ class FollowPersonTask final : public Task {
   [[nodiscard]] Requests first_requests() const override;
   Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
 
+  /// From the next image on the person is followed only where face or marker say who it is; false: by the shirt too.
+  void follow_by_primary_only(bool only) { by_primary_only_ = only; }
+
  private:
   [[nodiscard]] behavior::Sighting sighting_of(const person::PersonSighting& who, const ImageView& image) const;
   void light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed, Decision& decision);
@@ -49,6 +52,7 @@ class FollowPersonTask final : public Task {
   std::optional<behavior::Sighting> last_;  // of the person, with its age
   geometry::Camera camera_;
   std::optional<behavior::FillLight> light_;
+  bool by_primary_only_ = false;
 };
 
 /// Who Is Who in a line (6.4.1.2): turns along a line of people and tells who each is. What is said is an event with numbers, never a name.

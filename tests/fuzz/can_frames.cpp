@@ -20,7 +20,7 @@ namespace {
 constexpr int kMostForward = 1176;  // of the command's slots
 constexpr int kMostTurn = 1024;
 
-void must(bool holds) {
+void check(bool holds) {
   if (!holds) std::abort();
 }
 
@@ -31,7 +31,7 @@ class Bench {
     auto owned = std::make_unique<test::FuzzBus>();
     bus_ = owned.get();
     drive_ = std::make_unique<hal::rmp::RmpDrive>(std::move(owned), hal::rmp::RmpParameters{});
-    must(drive_->start().has_value());
+    check(drive_->start().has_value());
   }
 
   void healthy(std::size_t damaged, std::size_t at, std::uint8_t mask) {
@@ -63,9 +63,10 @@ class Bench {
     judge();
     if (odometry) {
       const hal::rmp::RmpParameters bounds;
-      must(std::isfinite(odometry->x_m) && std::isfinite(odometry->y_m) && std::isfinite(odometry->heading_rad));
-      must(std::abs(odometry->velocity.forward_mps) <= bounds.max_plausible_mps);
-      must(std::abs(odometry->velocity.left_radps) <= bounds.max_plausible_radps);
+      check(std::isfinite(odometry->x_m) && std::isfinite(odometry->y_m) && std::isfinite(odometry->heading_rad));
+      check(std::abs(odometry->velocity.forward_mps) <= bounds.max_plausible_mps);
+      check(std::abs(odometry->velocity.left_radps) <= bounds.max_plausible_radps);
+      check(std::abs(odometry->pitch_rad) <= 1.6);
     }
     shadow_.commanded(now_);
     static_cast<void>(drive_->command(twist, now_));
@@ -79,9 +80,9 @@ class Bench {
       const auto slot = [&command](std::size_t i) {
         return static_cast<std::int16_t>(command.data[i] << 8 | command.data[i + 1]);
       };
-      must(command.id == 0x413);
-      must(std::abs(slot(0)) <= kMostForward && std::abs(slot(2)) <= kMostTurn);
-      must((slot(0) == 0 && slot(2) == 0) || shadow_.motion_allowed(now_));
+      check(command.id == 0x413 && command.size == 8);
+      check(std::abs(slot(0)) <= kMostForward && std::abs(slot(2)) <= kMostTurn);
+      check((slot(0) == 0 && slot(2) == 0) || shadow_.motion_allowed(now_));
     }
     bus_->sent.clear();
   }

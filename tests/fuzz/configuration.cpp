@@ -1,4 +1,4 @@
-// Whatever stands in a configuration file: read with every value in its range, or refused with the reason.
+// Whatever stands in the sections of camera and base in a configuration file: read with every value in its range, or refused with the reason.
 
 #include <cstddef>
 #include <cstdint>

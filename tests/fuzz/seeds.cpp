@@ -6,15 +6,19 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <turbojpeg.h>
 
+#include "hal/v4l2/jpeg_to_yuyv.h"
+#include "tests/fuzz/seeds.h"
+
 namespace {
 
-constexpr int kWidth_px = 32;
-constexpr int kHeight_px = 16;
+constexpr int kWidth_px = cgsr::test::kSeedWidth_px;
+constexpr int kHeight_px = cgsr::test::kSeedHeight_px;
 
 bool write(const std::filesystem::path& file, const void* data, std::size_t size) {
   std::filesystem::create_directories(file.parent_path());
@@ -23,17 +27,23 @@ bool write(const std::filesystem::path& file, const void* data, std::size_t size
   return stream.good();
 }
 
+// With the byte before it that chooses a second size; what does not decode is no beginning.
 bool write_images(const std::filesystem::path& folder) {
   std::array<std::uint8_t, std::size_t{3} * kWidth_px * kHeight_px> rgb{};
   for (std::size_t i = 0; i < rgb.size(); ++i) rgb.at(i) = static_cast<std::uint8_t>(7 * i);
   bool written = true;
-  for (const int subsampling : {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_GRAY, TJSAMP_440}) {
+  for (const int subsampling : {TJSAMP_444, TJSAMP_422, TJSAMP_420, TJSAMP_GRAY, TJSAMP_440, TJSAMP_411}) {
     const tjhandle encoder = tjInitCompress();
     unsigned char* jpeg = nullptr;
     unsigned long size = 0;
-    written &=
-        tjCompress2(encoder, rgb.data(), kWidth_px, 0, kHeight_px, TJPF_RGB, &jpeg, &size, subsampling, 80, 0) == 0 &&
-        write(folder / (std::to_string(subsampling) + ".jpg"), jpeg, size);
+    std::vector<std::uint8_t> input{1};
+    if (tjCompress2(encoder, rgb.data(), kWidth_px, 0, kHeight_px, TJPF_RGB, &jpeg, &size, subsampling, 80, 0) == 0)
+      input.insert(input.end(), jpeg, jpeg + size);
+    cgsr::hal::v4l2::JpegToYuyv decoder;
+    std::vector<std::uint8_t> image(std::size_t{2} * kWidth_px * kHeight_px);
+    const std::string problem = decoder.decode(std::span(input).subspan(1), kWidth_px, kHeight_px, image.data());
+    if (!problem.empty()) std::fprintf(stderr, "chroma format %d: %s\n", subsampling, problem.c_str());
+    written &= problem.empty() && write(folder / (std::to_string(subsampling) + ".jpg"), input.data(), input.size());
     tjFree(jpeg);
     tjDestroy(encoder);
   }

@@ -51,8 +51,8 @@ class Finals : public testing::Test {
     const ImageView image{shirt.data(), kWidth_px, kHeight_px, std::ptrdiff_t{2} * kWidth_px, PixelFormat::kYuyv};
     std::vector<std::string> said;
     for (int i = 0; i < images; ++i) {
-      const Decision decision = task_.decide(frame, image, kImage);
-      for (const Event& event : decision.events)
+      last_ = task_.decide(frame, image, kImage);
+      for (const Event& event : last_.events)
         if (event.source == "says") said.emplace_back(event.state);
     }
     return said;
@@ -64,6 +64,7 @@ class Finals : public testing::Test {
   const std::vector<std::uint8_t> green_ = plain(120, 90, 90), green_bright_ = plain(170, 78, 78),
                                   red_ = plain(120, 110, 200);
   FinalsTask task_;
+  Decision last_;
 };
 
 TEST_F(Finals, TellsThatItKnowsThePersonOnce) {
@@ -117,6 +118,36 @@ TEST_F(Finals, SaysNothingOfAShirtThatItHasHardlySeen) {
   see(1, kFace, green_, 4);
   see(person::kStranger, kFace, green_);
   EXPECT_EQ(see(1, kFace, red_), Words{"I have found you again"});
+}
+
+TEST_F(Finals, SomebodyElseWhoIsEnrolledIsNotThePersonEither) {
+  see(1, kFace, green_);
+  EXPECT_EQ(see(2, kFace, green_), Words{"you are somebody else: I have lost the person whom I follow"});
+}
+
+// A stranger who turns his back again is not followed by the shirt.
+TEST_F(Finals, LooksForThePersonByTheFaceAlone) {
+  see(1, kFace, green_);
+  see(1, kShirt, green_);
+  EXPECT_FALSE(last_.halt);
+  see(person::kStranger, kFace, green_, 5);
+  see(1, kShirt, green_, 60);
+  EXPECT_TRUE(last_.halt);
+  EXPECT_NE(last_.goal.left_radps, 0.0) << "it turns to look for the person";
+  EXPECT_EQ(task_.state(), FinalsState::kSeeking);
+  see(1, kFace, green_);
+  see(1, kShirt, green_);
+  EXPECT_FALSE(last_.halt);
+}
+
+TEST_F(Finals, TheShirtOfOneWhoWasTakenForThePersonInAnImageIsNotLookedAt) {
+  see(1, kFace, green_);
+  see(person::kStranger, kFace, green_);
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(see(1, kFace, green_, 2), Words{});
+    see(person::kStranger, kFace, green_, 1);
+  }
+  EXPECT_EQ(see(1, kFace, red_), (Words{"I have found you again", "you wear another shirt"}));
 }
 
 TEST_F(Finals, FollowsAsThePersonTaskDoes) {

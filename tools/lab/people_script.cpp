@@ -166,8 +166,8 @@ std::string text_of(const Figure& figure, const std::string& name) {
   return text + fmt::format(
                     "{{ at_m = [{:.2f}, {:.2f}, 0.0], wait_s = {:.2f}, heading_deg = 0.0 }},\n{{ at_m = [{:.2f}, "
                     "{:.2f}, 0.0], speed_mps = {:.2f}, wait_s = 1000.0, heading_deg = 0.0 }}]\n",
-                    figure.x_m + 0.02, figure.y_m, std::max(0.1, figure.walks_s - figure.turns_s), figure.x_m,
-                    figure.to_y_m, figure.speed_mps);
+                    figure.x_m + 0.02, figure.y_m, std::max(0.1, figure.walks_s - figure.turns_s),
+                    figure.to_x_m > 0.0 ? figure.to_x_m : figure.x_m, figure.to_y_m, figure.speed_mps);
 }
 
 }  // namespace cgsr::lab

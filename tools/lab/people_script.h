@@ -22,6 +22,7 @@ struct Figure {
   double from_s = 0.0, to_s = 1000.0;                    // of the whole run
   double turns_s = 1000.0;                               // away, so long after the run's begin
   double faces_s = -1.0;                                 // shows the back until then; negative: as turns_s says
+  double to_x_m = 0.0;                                   // where he walks to; 0: x_m
   double to_y_m = 0.0, walks_s = -1.0, speed_mps = 0.4;  // sideways, from then on; negative: he stands
 };
 

@@ -1,28 +1,11 @@
 #include "pipeline/person/face/face_tracks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
 
 namespace cgsr::person {
-namespace {
-
-// A comparison's confidence is 1 - exp(-x) / 2, x its distance from the threshold (FaceGallery::identify). The mean of n comparisons is surer by the root
-// of n; those of one face are not independent of each other, so that their number is bounded.
-double evidence_of(double confidence) {
-  constexpr double kMost = 0.999;
-  return -std::log(2.0 * (1.0 - std::clamp(confidence, 0.5, kMost)));
-}
-
-double confidence_of(double evidence, int comparisons) {
-  constexpr int kMost = 16;
-  return 1.0 - 0.5 * std::exp(-evidence / comparisons * std::sqrt(std::min(comparisons, kMost)));
-}
-
-}  // namespace
-
 FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
     : detector_(std::move(detector)), parameters_(parameters) {
   tracks_.reserve(kMaxFaces);
@@ -133,7 +116,7 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
 
 bool FaceTracks::is_due(const FaceTrack& track) const {
   if (!track.match) return true;
-  const bool sure = track.match->confidence >= parameters_.sure;
+  const bool sure = track.match->confidence >= parameters_.min_sure_confidence && !track.votes_.contradicted();
   return track.images_waited_ >= (sure ? parameters_.ask_again_images : parameters_.ask_again_unsure_images);
 }
 
@@ -145,23 +128,8 @@ void FaceTracks::asked(std::uint32_t face) {
 void FaceTracks::hear(const FaceAnswer& answer) {
   const auto track = std::ranges::find(tracks_, answer.face, &FaceTrack::number);
   if (track == tracks_.end()) return;
-  const bool agrees = track->vote_count_ > 0 && answer.match.label == track->votes_.front().label;
-  track->agreeing_ = agrees ? track->agreeing_ + 1 : 1;
-  track->evidence_ = (agrees ? track->evidence_ : 0.0) + evidence_of(answer.match.confidence);
-  std::shift_right(track->votes_.begin(), track->votes_.end(), 1);
-  track->votes_.front() = answer.match;
-  track->vote_count_ = std::min(track->vote_count_ + 1, FaceTrack::kVotes);
-  count_votes(*track);
-}
-
-// The newest answer decides with those that agree with it; too few: an older agreement stands until the next answer.
-void FaceTracks::count_votes(FaceTrack& track) const {
-  const auto votes = std::span(track.votes_).first(track.vote_count_);
-  const auto agreeing =
-      std::ranges::count_if(votes, [&](const FaceMatch& vote) { return vote.label == votes.front().label; });
-  if (agreeing < parameters_.min_agreeing) return;
-  track.match = votes.front();
-  track.match->confidence = confidence_of(track.evidence_, track.agreeing_);
+  track->votes_.add(answer.match, parameters_.min_agreeing);
+  track->match = track->votes_.match();
 }
 
 }  // namespace cgsr::person

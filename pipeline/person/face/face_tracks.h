@@ -1,13 +1,14 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "pipeline/person/face/face_detector.h"
 #include "pipeline/person/face/face_recognizer.h"
+#include "pipeline/person/face/face_votes.h"
 #include "platform/parameters.h"
 #include "platform/work_budget.h"
 
@@ -18,7 +19,7 @@ struct FaceTrackParameters {
   int min_agreeing = 2;
   int ask_again_images = 15;
   int ask_again_unsure_images = 6;
-  double sure = 0.75;
+  double min_sure_confidence = 0.75;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -30,9 +31,16 @@ struct FaceTrackParameters {
                  "A face that has a name is compared again after this many images.");
     visit.number("ask_again_unsure_images", self.ask_again_unsure_images, Range{1, 300}, "",
                  "After this many where it is not yet sure.");
-    visit.number("sure", self.sure, Range{0.5, 1.0}, "",
+    visit.number("min_sure_confidence", self.min_sure_confidence, Range{0.5, 1.0}, "",
                  "The confidence from which on a name is sure: above that of a shirt, which overrules a less sure face "
                  "(Alg. 6.1).");
+  }
+
+  /// \return what is wrong with the keys together; empty when nothing is.
+  [[nodiscard]] std::string inconsistency() const {
+    return ask_again_unsure_images > ask_again_images ? "ask_again_unsure_images is larger than ask_again_images: a "
+                                                        "face that is not sure is compared more often"
+                                                      : "";
   }
 };
 
@@ -47,11 +55,7 @@ struct FaceTrack {
 
  private:
   friend class FaceTracks;
-  static constexpr std::size_t kVotes = 3;
-  std::array<FaceMatch, kVotes> votes_{};  // the last comparisons, the newest first
-  std::size_t vote_count_ = 0;
-  int agreeing_ = 0;       // comparisons in a row that said the same, the newest among them
-  double evidence_ = 0.0;  // their sum, each by how far from the threshold it is
+  FaceVotes votes_;
   int looks_waited_ = 0;   // since it was looked for
   int images_waited_ = 0;  // since it was compared
 };
@@ -89,7 +93,6 @@ class FaceTracks {
   void forget_lost();
   void search(const ImageView& image);
   void add(const Box& face);
-  void count_votes(FaceTrack& track) const;
   [[nodiscard]] bool is_due(const FaceTrack& track) const;
   [[nodiscard]] FaceTrack* longest_waiting();
 

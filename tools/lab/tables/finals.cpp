@@ -27,18 +27,17 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr double kTurning_s = 1.3;    // from the back to the front, until the face is within 20 degrees
-constexpr double kToNotice_s = 1.0;   // of a stranger's face
-constexpr double kApart = 0.12;       // chromaticities of two shirts that are not the same
-constexpr std::size_t kPassings = 2;  // a stranger takes the person's place
+constexpr double kToNotice_s = 1.0;   // a face: the figure turns round at once, in a tenth of a second
+constexpr double kApart = 0.08;       // chromaticities of two shirts that are not the same
+constexpr std::size_t kTimes = 2;     // that a stranger takes the person's place
 constexpr std::size_t kEnrolled = 2;  // the person, and somebody who never comes
-constexpr double kWalking_s = 4.0, kBack_s = 3.0, kFront_s = 3.0, kSearch_s = 14.0, kAgain_s = 3.0, kGap_s = 0.4;
+constexpr double kWalking_s = 4.0, kBack_s = 3.0, kFront_s = 4.0, kSearch_s = 17.0, kAgain_s = 3.0, kGap_s = 0.4;
 
 using Shirt = std::array<double, 3>;
 
 /// A stranger takes the person's place, and the person comes back.
-struct Passing {
-  double stranger_from_s = 0.0, face_s = 0.0, stranger_to_s = 0.0;  // face_s: it can be seen from then on
+struct Exchange {
+  double stranger_from_s = 0.0, face_s = 0.0, stranger_to_s = 0.0;  // face_s: he turns round
   double person_from_s = 0.0, person_turns_s = 0.0;
   bool other_shirt = false;
 };
@@ -47,7 +46,7 @@ struct Passing {
 struct Story {
   std::vector<int> enrolled;
   std::vector<Figure> figures;
-  std::array<Passing, kPassings> passings{};
+  std::array<Exchange, kTimes> exchanges{};
   double ends_s = 0.0;
   std::string lamp;
 };
@@ -59,14 +58,14 @@ double chroma_distance(const Shirt& a, const Shirt& b) {
 
 Shirt other_shirt(const Shirt& shirt, Random& random) {
   Shirt other = draw_vivid_shirt(random);
-  for (int i = 0; i < 100 && chroma_distance(shirt, other) < kApart; ++i) other = draw_vivid_shirt(random);
+  while (chroma_distance(shirt, other) < kApart) other = draw_vivid_shirt(random);
   return other;
 }
 
 /// The person from the front, then walking with the back to the robot.
-Figure walking(Figure person, double from_s, double turns_s, double to_y_m) {
+Figure walking(Figure person, double from_s, double turns_s, double to_x_m, double to_y_m) {
   person.from_s = from_s, person.turns_s = turns_s, person.to_s = turns_s + kWalking_s;
-  person.walks_s = turns_s + 0.5, person.to_y_m = to_y_m;
+  person.walks_s = turns_s + 0.5, person.to_x_m = to_x_m, person.to_y_m = to_y_m;
   return person;
 }
 
@@ -84,74 +83,78 @@ Story draw_story(Random& random) {
   double side = random.uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
   person.y_m = -side * random.uniform(0.2, 0.5);
   double turns_s = kTraining_s + 1.0, from_s = 0.0;
-  for (std::size_t i = 0; i < kPassings; ++i) {
-    Passing& passing = story.passings[i];
-    const double to_y_m = side * random.uniform(0.1, 0.5);
-    const Figure walks = walking(person, from_s, turns_s, to_y_m);
+  for (std::size_t i = 0; i < kTimes; ++i) {
+    Exchange& exchange = story.exchanges[i];
+    const double to_x_m = person.x_m + random.uniform(0.3, 0.9), to_y_m = side * random.uniform(0.0, 0.6);
+    const Figure walks = walking(person, from_s, turns_s, to_x_m, to_y_m);
     Figure stranger{.identity = all[kEnrolled + i], .height_m = random.uniform(1.62, 1.82), .shirt = person.shirt};
-    stranger.x_m = person.x_m, stranger.y_m = to_y_m;
-    stranger.from_s = passing.stranger_from_s = walks.to_s;
-    stranger.faces_s = stranger.from_s + kBack_s;
-    passing.face_s = stranger.faces_s + kTurning_s;
-    stranger.to_s = passing.stranger_to_s = passing.face_s + kFront_s;
+    stranger.x_m = to_x_m, stranger.y_m = to_y_m;
+    stranger.from_s = exchange.stranger_from_s = walks.to_s;
+    stranger.faces_s = exchange.face_s = stranger.from_s + kBack_s;
+    stranger.to_s = exchange.stranger_to_s = exchange.face_s + kFront_s;
     story.figures.insert(story.figures.end(), {walks, stranger});
-    passing.other_shirt = i == 0 || random.uniform(0.0, 1.0) < 0.5;
-    if (passing.other_shirt) person.shirt = other_shirt(person.shirt, random);
+    exchange.other_shirt = i == 0 || random.uniform(0.0, 1.0) < 0.5;
+    if (exchange.other_shirt) person.shirt = other_shirt(person.shirt, random);
     side = -side;
-    person.y_m = -side * random.uniform(0.2, 0.6);
-    from_s = passing.person_from_s = stranger.to_s + kGap_s;
-    turns_s = passing.person_turns_s = from_s + kSearch_s + kAgain_s;
+    person.x_m = to_x_m + random.uniform(-0.2, 0.2);
+    person.y_m = -side * random.uniform(0.0, 1.0);
+    from_s = exchange.person_from_s = stranger.to_s + kGap_s;
+    turns_s = exchange.person_turns_s = from_s + kSearch_s + kAgain_s;
   }
   person.from_s = from_s;
   story.figures.push_back(person);
-  story.ends_s = story.passings.back().person_turns_s;
+  story.ends_s = story.exchanges.back().person_turns_s;
   return story;
 }
 
-/// What was said of one passing.
+/// What was said of one exchange.
 struct Said {
   std::optional<double> noticed_after_s, found_after_s;
-  bool noticed_early = false;  // of a stranger's face that cannot be seen yet
   std::optional<bool> other_shirt;
 
-  [[nodiscard]] bool right(const Passing& passing) const {
-    return noticed_after_s && *noticed_after_s <= kToNotice_s && !noticed_early && found_after_s &&
-           other_shirt == passing.other_shirt;
+  [[nodiscard]] bool right(const Exchange& exchange) const {
+    return noticed_after_s && *noticed_after_s <= kToNotice_s && found_after_s && other_shirt == exchange.other_shirt;
   }
 };
 
 struct Told {
-  std::array<Said, kPassings> passings{};
-  int wrong = 0;  // the person called somebody else, a stranger taken for the person found again
+  std::array<Said, kTimes> exchanges{};
+  int out_of_place = 0;  // said too early, too late, twice or of the wrong person
   bool right = false;
+  double driven_m = 0.0;
 };
 
 constexpr std::string_view kStranger = "you are somebody else", kAgain = "I have found you again",
-                           kOther = "you wear another shirt", kSame = "you wear the same shirt";
+                           kOther = "you wear another shirt", kSame = "you wear the same shirt", kKnown = "I know you";
 
-void hear(const std::string& words, double at_s, const Story& story, Told& told) {
-  for (std::size_t i = kPassings; i-- > 0;) {
-    const Passing& passing = story.passings[i];
-    Said& said = told.passings[i];
-    if (at_s < passing.stranger_from_s) continue;
-    const bool of_stranger = at_s < passing.stranger_to_s + kGap_s;
-    if (words.starts_with(kStranger)) {
-      if (!of_stranger || said.noticed_after_s)
-        ++told.wrong;
-      else
-        said.noticed_after_s = std::max(0.0, at_s - passing.face_s),
-        said.noticed_early = at_s < passing.face_s - kTurning_s;
-    } else if (words.starts_with(kAgain)) {
-      if (of_stranger)
-        ++told.wrong;
-      else if (!said.found_after_s)
-        said.found_after_s = at_s - passing.person_from_s;
-    } else if (words == kOther || words == kSame) {
-      if (!said.other_shirt) said.other_shirt = words == kOther;
-    }
-    return;
+/// \return the exchange that goes on at that time; nothing: the person alone was there so far.
+std::optional<std::size_t> exchange_at(const Story& story, double at_s) {
+  for (std::size_t i = kTimes; i-- > 0;)
+    if (at_s >= story.exchanges[i].stranger_from_s) return i;
+  return std::nullopt;
+}
+
+/// Each thing is said once, in its order: the stranger noticed while he is there and shows his face, the person found and then the shirt spoken of while
+/// the person is there. \return whether it was in its place.
+bool note(const std::string& words, double at_s, const Story& story, Told& told) {
+  const auto number = exchange_at(story, at_s);
+  if (!number) return words.starts_with(kKnown);
+  const Exchange& exchange = story.exchanges[*number];
+  Said& said = told.exchanges[*number];
+  const bool person_there = at_s >= exchange.person_from_s;
+  if (words.starts_with(kStranger) && !said.noticed_after_s && !person_there && at_s >= exchange.face_s) {
+    said.noticed_after_s = at_s - exchange.face_s;
+    return true;
   }
-  if (words.starts_with(kStranger) || words.starts_with(kAgain)) ++told.wrong;
+  if (words.starts_with(kAgain) && said.noticed_after_s && !said.found_after_s && person_there) {
+    said.found_after_s = at_s - exchange.person_from_s;
+    return true;
+  }
+  if ((words == kOther || words == kSame) && said.found_after_s && !said.other_shirt && person_there) {
+    said.other_shirt = words == kOther;
+    return true;
+  }
+  return false;
 }
 
 Result<Told> watch_story(const TableFolder& folder, const std::string& shipped, std::uint64_t seed, const Story& story,
@@ -172,10 +175,14 @@ Result<Told> watch_story(const TableFolder& folder, const std::string& shipped, 
   const auto run = run_for_json(words, json);
   if (!run) return tl::unexpected(run.error());
   Told told;
-  for (const auto& event : run->at("events"))
-    if (event.at("source") == "says") hear(event.at("state"), event.at("at_s"), story, told);
-  told.right = told.wrong == 0;
-  for (std::size_t i = 0; i < kPassings; ++i) told.right = told.right && told.passings[i].right(story.passings[i]);
+  for (const auto& event : run->at("events")) {
+    if (event.at("source") != "says") continue;
+    told.out_of_place += note(event.at("state"), event.at("at_s"), story, told) ? 0 : 1;
+  }
+  const auto& odometry = run->at("motion").at("odometry");
+  told.driven_m = std::hypot(odometry.at(0).get<double>(), odometry.at(1).get<double>());
+  told.right = told.out_of_place == 0;
+  for (std::size_t i = 0; i < kTimes; ++i) told.right = told.right && told.exchanges[i].right(story.exchanges[i]);
   return told;
 }
 
@@ -208,42 +215,44 @@ Result<std::pair<Story, int>> draw_enrolled(const TableFolder& folder, Portraits
 /// A run in which something went wrong, for whoever wants to look at it.
 std::string describe(std::uint64_t seed, const Story& story, const Told& told) {
   std::string text = fmt::format("Seed {}:", seed);
-  for (std::size_t i = 0; i < kPassings; ++i) {
-    const Said& said = told.passings[i];
+  for (std::size_t i = 0; i < kTimes; ++i) {
+    const Said& said = told.exchanges[i];
     text +=
         fmt::format(" stranger {} {}, person {}, shirt {};", i + 1,
                     said.noticed_after_s ? fmt::format("noticed after {:.2f} s", *said.noticed_after_s) : "not noticed",
                     said.found_after_s ? fmt::format("found after {:.1f} s", *said.found_after_s) : "not found",
-                    !said.other_shirt                                    ? "not spoken of"
-                    : *said.other_shirt == story.passings[i].other_shirt ? "right"
-                                                                         : "wrong");
+                    !said.other_shirt                                     ? "not spoken of"
+                    : *said.other_shirt == story.exchanges[i].other_shirt ? "right"
+                                                                          : "wrong");
   }
-  return text + fmt::format(" said wrongly {} times.", told.wrong);
+  return text + fmt::format(" said out of place {} times.", told.out_of_place);
 }
 
 void add_rows(const std::vector<Story>& stories, const std::vector<Told>& runs, std::uint64_t seed, Report& report) {
-  const int passings = static_cast<int>(runs.size() * kPassings);
-  int right = 0, noticed = 0, found = 0, shirts = 0, wrong = 0;
-  std::vector<double> notice_s, find_s;
+  const int exchanges = static_cast<int>(runs.size() * kTimes);
+  int right = 0, noticed = 0, found = 0, shirts = 0, out_of_place = 0;
+  std::vector<double> notice_s, find_s, driven_m;
   for (std::size_t run = 0; run < runs.size(); ++run) {
     right += runs[run].right ? 1 : 0;
-    wrong += runs[run].wrong;
-    for (std::size_t i = 0; i < kPassings; ++i) {
-      const Said& said = runs[run].passings[i];
+    out_of_place += runs[run].out_of_place;
+    driven_m.push_back(runs[run].driven_m);
+    for (std::size_t i = 0; i < kTimes; ++i) {
+      const Said& said = runs[run].exchanges[i];
       noticed += said.noticed_after_s && *said.noticed_after_s <= kToNotice_s ? 1 : 0;
       found += said.found_after_s ? 1 : 0;
-      shirts += said.other_shirt == stories[run].passings[i].other_shirt ? 1 : 0;
+      shirts += said.other_shirt == stories[run].exchanges[i].other_shirt ? 1 : 0;
       if (said.noticed_after_s) notice_s.push_back(*said.noticed_after_s);
       if (said.found_after_s) find_s.push_back(*said.found_after_s);
     }
   }
   report.rows.push_back(share_row("all of it", "right", right, static_cast<int>(runs.size())));
-  report.rows.push_back(share_row("strangers", "noticed within 1 s of their face", noticed, passings));
+  report.rows.push_back(share_row("strangers", "noticed within 1 s of their face", noticed, exchanges));
   report.rows.push_back(mean_row("strangers", "noticed after", "s", notice_s, seed));
-  report.rows.push_back(share_row("person", "found again", found, passings));
+  report.rows.push_back(share_row("person", "found again", found, exchanges));
   report.rows.push_back(mean_row("person", "found after", "s", find_s, seed));
-  report.rows.push_back(share_row("shirt", "rightly said to be the same or another", shirts, passings));
-  report.rows.push_back(plain_row("person or stranger", "taken for the other aloud", "", wrong, runs.size()));
+  report.rows.push_back(share_row("shirt", "rightly said to be the same or another", shirts, exchanges));
+  report.rows.push_back(plain_row("all of it", "said out of place", "", out_of_place, runs.size()));
+  report.rows.push_back(mean_row("all of it", "driven, from begin to end in a line", "m", driven_m, seed));
 }
 
 }  // namespace
@@ -278,13 +287,15 @@ Result<Report> finals(const Setting& setting) {
   report.rows.push_back(
       plain_row("enrolment", "pairs drawn again because the second is refused as the first", "", redrawn, runs.size()));
   report.notes = {
-      "Who is who, shirts, heights, places and the lamp's colour are drawn by the seed; the robot drives. Twice a "
+      "Who is who, shirts, heights, ways, places and the lamp's colour are drawn by the seed; the robot drives. Twice "
+      "a "
       "stranger in the person's shirt, with the back to the robot, takes the person's place and turns round after 3 s; "
-      "then the person is back, the first time in another shirt, the second time in another or the same.",
+      "then the person is back somewhere else, the first time in another shirt, the second time in another or the "
+      "same.",
       fmt::format(
-          "Right: both strangers are noticed within {} s of their face (from 20 degrees on), the person is found "
-          "again both times and the shirt is spoken of rightly. Shirts that are not the same differ by {} in "
-          "chromaticity.",
+          "Right: both strangers are noticed within {} s of turning round, the person is found again both times, "
+          "the shirt is spoken of rightly, and nothing else is said. Shirts are vivid, and those that are not "
+          "the same differ by {} in chromaticity at least.",
           kToNotice_s, kApart),
       "With --videos FOLDER every run leaves its film there."};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "pipeline/person/face/face_gallery.h"
+
+namespace cgsr::person {
+
+/// Whose one face is by several comparisons (6.2.1 compares once; the rest is ours): the newest answer decides with those of the last three that agree with it.
+///
+/// A comparison's confidence is 1 - exp(-x) / 2, x its distance from the threshold (FaceGallery::identify). The mean of n comparisons is surer by the root
+/// of n. Those of one face are not independent of each other: n is at most 16, and a comparison that contradicts halves it.
+class FaceVotes {
+ public:
+  /// \param min_agreeing  of the last three answers, else an older agreement stands.
+  void add(const FaceMatch& answer, int min_agreeing);
+
+  /// \return nothing: not known yet. A match without a label: a stranger's.
+  [[nodiscard]] const std::optional<FaceMatch>& match() const { return match_; }
+  /// Whether the newest answer is another one than match().
+  [[nodiscard]] bool contradicted() const;
+
+ private:
+  static constexpr std::size_t kVotes = 3;
+  std::array<FaceMatch, kVotes> votes_{};  // the newest first
+  std::size_t vote_count_ = 0;
+  std::optional<FaceMatch> match_;
+  int comparisons_ = 0;    // that made match_
+  double evidence_ = 0.0;  // their mean x
+};
+
+}  // namespace cgsr::person
