@@ -8,7 +8,7 @@
 
 namespace cgsr::person {
 
-/// Whose one face is by several comparisons (6.2.1 compares once; the rest is ours): the newest answer decides with those of the last three that agree with it.
+/// Whose one face is by several comparisons: the newest answer decides with those of the last three that agree with it. Ours: 6.2.1 compares once.
 ///
 /// A comparison's confidence is 1 - exp(-x) / 2, x its distance from the threshold (FaceGallery::identify). The mean of n comparisons is surer by the root
 /// of n. Those of one face are not independent of each other: n is at most 16, and a comparison that contradicts halves it.
