@@ -21,6 +21,7 @@ find_package(fastcdr REQUIRED)                          # recordings: ROS 2's se
 pkg_check_modules(OSMESA REQUIRED IMPORTED_TARGET osmesa)  # OpenGL without a window
 find_package(embree 3.13 REQUIRED)  # the simulator alone: ray tracing
 find_package(assimp 5.2 REQUIRED)   # meshes: maps, and scenes of the simulator
+find_package(Ceres 2.1 REQUIRED)     # a map refined from a drive (pipeline/mapping): in no program of the robot's
 # The lab alone, and it works without: a peer that localisation is compared with. Its parts come without a package for CMake.
 find_path(VISP_INCLUDE visp3/mbt/vpMbGenericTracker.h)
 find_library(VISP_MBT visp_mbt)

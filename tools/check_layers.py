@@ -39,6 +39,7 @@ ALLOWED = {
                         "pipeline/render", "pipeline/behavior", *CHAPTERS],
     "pipeline/motion": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/behavior"],
     "pipeline/calibration": ["platform", "pipeline/geometry", "pipeline/illumination", "pipeline/stages"],
+    "pipeline/mapping": ["platform", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/localization"],
     # the loop of Figure 5.1: the files directly in pipeline/
     "pipeline": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/stages"],
 }
@@ -57,10 +58,10 @@ PROGRAM = {
     "src": ["src/commands"],  # main.cpp
 }
 # The outermost rooms see everything, and nobody sees them.
-OUTERMOST = ["tools/lab", "tools/sim", "tests", "docs/guides"]  # the last one holds the guides' examples
+OUTERMOST = ["tools/lab", "tools/map", "tools/sim", "tests", "docs/guides"]  # the last one holds the guides' examples
 # A chapter knows no device, thread, clock or environment.
 FORBIDDEN_IN_CHAPTERS = re.compile(r'^\s*#include\s+[<"](thread|mutex|condition_variable|fcntl\.h|unistd\.h|sys/|platform/(clock|thread|stop|service)\.h|hal/)')
-PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", *CHAPTERS]
+PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", "pipeline/mapping", *CHAPTERS]
 # Peers are linked by the lab alone; the simulator's truth is for tests, the lab and the simulator's own tools.
 TRUTH_ROOMS = ["tests", "tools/lab", "tools/sim", "hal/sim"]
 ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": TRUTH_ROOMS, "hal/sim/render/truth_images.h": TRUTH_ROOMS,

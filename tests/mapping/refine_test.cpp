@@ -1,0 +1,136 @@
+#include "pipeline/mapping/refine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "pipeline/mapping/propose.h"
+#include "tests/mapping/furnished_room.h"
+
+namespace cgsr::mapping {
+namespace {
+
+using testing::elastic;
+using ::testing::HasSubstr;
+using testing::moved_room_as_obj;
+using testing::room_as_obj;
+using testing::small_camera;
+using testing::views_of;
+
+double mean_error(const std::vector<Eigen::Vector3d>& corners, const std::vector<Eigen::Vector3d>& truth) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) sum += (corners[i] - truth[i]).norm();
+  return sum / static_cast<double>(corners.size());
+}
+
+TEST(Refine, LeavesAMapAloneThatIsRight) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  auto views = views_of(text, 0.0, 0.0, 40, 1);
+
+  const Refined refined = refine(map, views, small_camera(), {});
+
+  for (std::size_t i = 0; i < refined.corners.size(); ++i) {
+    EXPECT_LT((refined.corners[i] - map.measured()[i]).norm(), 0.002) << i;
+  }
+}
+
+// Things that are N(0, 5 cm) beside where they stand come back, seen from poses that are 5 cm off themselves. What is left is mostly common to
+// all: only the given poses and the things themselves say where the whole is.
+TEST(Refine, PutsThingsBackThatWereMeasuredWrongly) {
+  const auto truth = parse_obj(room_as_obj(), "room");
+  ASSERT_TRUE(truth);
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const std::string text = moved_room_as_obj(0.05, seed);
+    const auto file = parse_obj(text, "room");
+    ASSERT_TRUE(file);
+    ElasticMap map = elastic(*file, text);
+    std::vector<geometry::Pose> true_poses;
+    auto views = views_of(room_as_obj(), 0.3, 1.0, 40, seed, &true_poses);
+    RefineParameters parameters;
+    parameters.correlated_images = 1.0;  // theirs are not
+
+    const Refined refined = refine(map, views, small_camera(), parameters);
+
+    const auto points = map.points(*file, refined.corners);
+    const double before = mean_error(file->points, truth->points);
+    const double after = mean_error(points, truth->points);
+    EXPECT_GT(before, 0.03) << seed;
+    EXPECT_LT(after, 0.02) << seed;
+    EXPECT_LT(after, 0.5 * before) << seed;
+    double pose_error = 0.0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      pose_error += (views[i].X_WC.translation() - true_poses[i].translation()).norm() / 40.0;
+    }
+    EXPECT_LT(pose_error, 0.02) << seed;
+  }
+}
+
+TEST(Refine, SaysHowWellACornerIsKnown) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  auto views = views_of(text, 0.3, 0.0, 40, 2);
+  const Refined refined = refine(map, views, small_camera(), {});
+  ASSERT_EQ(refined.sigma_m.size(), refined.corners.size());
+  for (std::size_t i = 0; i < refined.corners.size(); ++i) {
+    EXPECT_GT(refined.sigma_m[i], 0.0);
+    EXPECT_LE(refined.sigma_m[i], map.sigmas()[i] * 1.001);
+  }
+}
+
+// What stands in the room and not in the map is proposed, and nothing else is.
+TEST(Propose, FindsAChairThatIsNotInTheMap) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  auto views = views_of(testing::chair_as_obj(), 0.2, 0.0, 60, 3);
+  refine(map, views, small_camera(), {});
+
+  const auto proposals = propose_edges(map, views, small_camera(), {}, {});
+
+  EXPECT_GE(proposals.size(), 4U);
+  for (const Proposal& proposal : proposals) {
+    for (const Eigen::Vector3d& p : {proposal.a, proposal.b}) {
+      EXPECT_LT((p - Eigen::Vector3d(2.4, 2.0, 0.225)).cwiseAbs().x(), 0.25);
+      EXPECT_LT((p - Eigen::Vector3d(2.4, 2.0, 0.225)).cwiseAbs().y(), 0.25);
+      EXPECT_LT((p - Eigen::Vector3d(2.4, 2.0, 0.225)).cwiseAbs().z(), 0.275);
+    }
+    EXPECT_GE(proposal.images, ProposeParameters{}.min_support);
+  }
+}
+
+TEST(Propose, FindsNothingWhereTheMapIsWhole) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  const ElasticMap map = elastic(*file, text);
+  const auto views = views_of(text, 0.2, 0.0, 60, 3);
+  EXPECT_TRUE(propose_edges(map, views, small_camera(), {}, {}).empty());
+}
+
+TEST(ElasticMap, KnowsItsParts) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  const ElasticMap map = elastic(*file, text);
+  std::vector<std::string> names;
+  for (const Part& part : map.parts()) names.push_back(part.name);
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("room", "chest", "box", "shelf", "bench", "sheet", "sheet_2"));
+}
+
+TEST(ElasticMap, RefusesAMapThatIsNotTheFiles) {
+  const auto file = parse_obj("v 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n", "other");
+  ASSERT_TRUE(file);
+  world::Map map;
+  map.vertices = {{7.0F, 0.0F, 0.0F}};
+  const auto made = ElasticMap::make(*file, map, {});
+  ASSERT_FALSE(made);
+  EXPECT_THAT(made.error().message, HasSubstr("(7, 0, 0)"));
+}
+
+}  // namespace
+}  // namespace cgsr::mapping
