@@ -3,6 +3,7 @@
 #   cgsr             the robot: program, service, configuration, maps
 #   cgsr-opengl      the expected view by Mesa (localizer.expectation = "opengl"), whose compiler is larger than all the rest
 #   cgsr-simulator   the simulated home, its worlds and tools: the ray tracer
+#   cgsr-map         `cgsr map refine`: the solver Ceres
 #   cgsr-lab         the measurements of `cgsr reproduce`
 #
 # Programs and plug-ins lie in one folder, for each finds the others beside itself; /usr/bin holds a link.
@@ -14,6 +15,7 @@ install(TARGETS cgsr RUNTIME DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr)
 install(TARGETS cgsr_opengl_plugin LIBRARY DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr-opengl)
 install(TARGETS cgsr_sim_plugin LIBRARY DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr-simulator)
 install(TARGETS cgsr-sim RUNTIME DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr-simulator)
+install(TARGETS cgsr-map RUNTIME DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr-map)
 install(TARGETS cgsr-lab RUNTIME DESTINATION ${CGSR_PRIVATE_DIR} COMPONENT cgsr-lab)
 install(CODE "
   file(MAKE_DIRECTORY \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/bin\")
@@ -42,7 +44,7 @@ add_custom_target(package_files
 install(DIRECTORY ${CGSR_PACKAGE_FILES}/man1 DESTINATION share/man COMPONENT cgsr OPTIONAL)
 install(FILES ${CGSR_PACKAGE_FILES}/completion RENAME cgsr DESTINATION share/bash-completion/completions COMPONENT cgsr OPTIONAL)
 
-foreach(component cgsr cgsr-opengl cgsr-simulator cgsr-lab)
+foreach(component cgsr cgsr-opengl cgsr-simulator cgsr-map cgsr-lab)
   install(FILES cmake/package/copyright DESTINATION share/doc/${component} COMPONENT ${component})
   install(FILES ${CGSR_PACKAGE_FILES}/changelog.gz DESTINATION share/doc/${component} COMPONENT ${component} OPTIONAL)
 endforeach()
@@ -56,7 +58,7 @@ set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_SET_DESTDIR ON)  # /etc lies outside the prefix
 set(CPACK_STRIP_FILES ON)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
-set(CPACK_COMPONENTS_ALL cgsr cgsr-opengl cgsr-simulator cgsr-lab)
+set(CPACK_COMPONENTS_ALL cgsr cgsr-opengl cgsr-simulator cgsr-map cgsr-lab)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -82,13 +84,16 @@ the program's own rasteriser (localizer.expectation = opengl).")
 cgsr_package(cgsr-simulator "simulated home for cgsr"
 "A plug-in for cgsr with a ray-traced home, a Segway on a virtual CAN bus and
 lamps, and the tools that draw and export its worlds.")
+cgsr_package(cgsr-map "a map refined from a drive, for cgsr"
+"The program behind `cgsr map refine`: it moves the parts of a measured map to
+where the images of a drive show them, and proposes edges that it lacks.")
 cgsr_package(cgsr-lab "measurements of cgsr"
 "The program behind `cgsr reproduce`: the tables and figures of the dissertation
 measured anew, beside trackers of others.")
 set(CPACK_DEBIAN_CGSR_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
 set(CPACK_DEBIAN_CGSR_PACKAGE_RECOMMENDS "systemd, udev")
-set(CPACK_DEBIAN_CGSR_PACKAGE_SUGGESTS "cgsr-opengl, cgsr-simulator")
-foreach(component OPENGL SIMULATOR LAB)
+set(CPACK_DEBIAN_CGSR_PACKAGE_SUGGESTS "cgsr-opengl, cgsr-simulator, cgsr-map")
+foreach(component OPENGL SIMULATOR MAP LAB)
   set(CPACK_DEBIAN_CGSR-${component}_PACKAGE_DEPENDS "cgsr (= ${PROJECT_VERSION})")
 endforeach()
 set(CPACK_DEBIAN_CGSR_PACKAGE_CONTROL_EXTRA

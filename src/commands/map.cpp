@@ -19,6 +19,7 @@
 #include "platform/clock.h"
 #include "src/commands/command.h"
 #include "src/commands/files.h"
+#include "src/commands/hand_over.h"
 #include "src/commands/map_options.h"
 #include "src/commands/option_checks.h"
 #include "src/input/camera_file.h"
@@ -217,6 +218,16 @@ void add_load_options(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+/// Bundle adjustment links Ceres, the robot's program does not.
+void add_refine(CLI::App& map, int& exit_code) {
+  auto* command = map.add_subcommand("refine", "move the map's parts to where the images of a drive show them");
+  command->footer("cgsr map refine --help explains the rest.");
+  command->set_help_flag();  // --help too is for the program that answers
+  command->allow_extras();
+  command->prefix_command();
+  command->callback([command, &exit_code] { exit_code = hand_over("cgsr-map", command->remaining()); });
+}
+
 }  // namespace
 
 void add_map_command(CLI::App& app, int& exit_code) {
@@ -262,6 +273,7 @@ void add_map_command(CLI::App& app, int& exit_code) {
   auto* overlay = command->add_subcommand("overlay", "the map's visible edges over an image");
   overlay->add_option("--image", options->image, "of the camera's size")->required();
   add_view(*overlay);
+  add_refine(*command, exit_code);
 }
 
 }  // namespace cgsr::app
