@@ -31,6 +31,9 @@ inline constexpr auto kColorRooms = with_stages(std::array<std::string_view, 5>{
 inline constexpr auto kLocalizationRooms = with_stages(std::array<std::string_view, 9>{
     "pipeline/localization", "pipeline/render", "pipeline/world", "pipeline/geometry", "pipeline/imaging",
     "pipeline/runtime", "hal/sim/render", "hal/sim/calibration", "tools/lab/localization"});
+inline constexpr std::array<std::string_view, 10> kMappingRooms{
+    "pipeline/mapping", "pipeline/localization", "pipeline/render",     "pipeline/world",         "pipeline/geometry",
+    "pipeline/imaging", "hal/sim/render",        "hal/sim/calibration", "tools/lab/localization", "tools/lab/mapping"};
 inline constexpr auto kLampRooms = with_stages(std::array<std::string_view, 8>{
     "pipeline/illumination", "pipeline/geometry", "pipeline/imaging", "pipeline/runtime", "hal/sim/render",
     "hal/sim/calibration", "tools/lab/probe_room.cpp", "tools/lab/probes_trial.cpp"});

@@ -101,6 +101,8 @@ constexpr std::array kRequirements{
     NamedRequirement{"table-4.2", "3725 edges, half in view, ours", "worst", at_most(13.0)},
     NamedRequirement{"table-4.2", "100000 edges, others behind, ours", "mean", at_most(16.0)},
     NamedRequirement{"table-4.2", "1000000 edges, others behind, ours", "mean", at_most(20.0)},
+    NamedRequirement{"map-refine", "each part off", "corners after", at_most(1.5)},
+    NamedRequirement{"map-refine", "each part off", "moved chair proposed", at_least(1.0)},
     NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "below 1 % and 1 degree",
                      at_least(0.95)},
     NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "below 1 % and 1 degree",
