@@ -44,6 +44,24 @@ inline constexpr auto kBallRooms = with_stages(std::array<std::string_view, 8>{
     "pipeline/color", "pipeline/imaging", "pipeline/render", "pipeline/geometry", "pipeline/runtime", "hal/sim/render",
     "tools/lab/ball_film.cpp", "tools/lab/shade_trial.cpp"});
 inline constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
-inline constexpr std::array<std::string_view, 4> kWholeRobot{"pipeline", "hal/sim", "hal/rmp", "config/scenarios"};
+/// Not pipeline/mapping: no robot links it.
+inline constexpr std::array<std::string_view, 18> kWholeRobot{"pipeline/behavior",
+                                                              "pipeline/calibration",
+                                                              "pipeline/color",
+                                                              "pipeline/geometry",
+                                                              "pipeline/illumination",
+                                                              "pipeline/imaging",
+                                                              "pipeline/localization",
+                                                              "pipeline/motion",
+                                                              "pipeline/person",
+                                                              "pipeline/render",
+                                                              "pipeline/runtime",
+                                                              "pipeline/stages",
+                                                              "pipeline/world",
+                                                              "pipeline/vision_loop.cpp",
+                                                              "pipeline/vision_loop.h",
+                                                              "hal/sim",
+                                                              "hal/rmp",
+                                                              "config/scenarios"};
 
 }  // namespace cgsr::lab
