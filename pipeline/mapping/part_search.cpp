@@ -84,8 +84,10 @@ class PartSearch {
       for (int y = -reach; y <= reach; ++y) try_at({x * kStep_m, y * kStep_m, 0.0});
     }
     for (int pass = 0; pass < 2; ++pass) {
+      // try_at() moves `best` meanwhile. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
       const Eigen::Vector3d middle = best;
       for (int z = -reach; z <= reach && !on_floor; ++z) try_at({middle.x(), middle.y(), z * kStep_m});
+      // Likewise. NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
       const Eigen::Vector3d fine = best;
       for (int x = -kFineSteps; x <= kFineSteps; ++x) {
         for (int y = -kFineSteps; y <= kFineSteps; ++y) {
