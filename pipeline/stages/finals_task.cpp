@@ -48,10 +48,14 @@ void FinalsTask::see_person(const person::PersonSighting& who, const ImageView& 
   say(*change > parameters_.max_same_shirt ? "you wear another shirt" : "you wear the same shirt", events);
 }
 
-// Who was followed wears the person's shirt, and may turn the back again: until the person's face is seen the shirt proves nothing.
 void FinalsTask::see_somebody_else(Events& events) {
   person_images_ = 0;
-  if (++other_images_ < parameters_.images_to_be_sure || state_ != FinalsState::kWith) return;
+  if (++other_images_ >= parameters_.images_to_be_sure && state_ == FinalsState::kWith) lose(events);
+}
+
+// Who was followed wears the person's shirt, and may turn the back again: until the person's face is seen the shirt proves nothing.
+void FinalsTask::lose(Events& events) {
+  person_images_ = 0;
   state_ = FinalsState::kSeeking;
   say("you are somebody else: I have lost the person whom I follow", events);
   shirt_.begin_anew();
@@ -62,7 +66,9 @@ void FinalsTask::see_somebody_else(Events& events) {
 Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   Decision decision = follow_.decide(frame, image, elapsed);
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
-  if (people == nullptr || people->person.source != person::PersonSource::kFace) return decision;
+  if (people == nullptr) return decision;
+  if (follow_.is_with_a_stranger() && state_ == FinalsState::kWith) lose(decision.events);
+  if (people->person.source != person::PersonSource::kFace) return decision;
   if (people->person.person == person_) {
     see_person(people->person, image, decision.events);
   } else {

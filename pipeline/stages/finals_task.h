@@ -34,6 +34,7 @@ class FinalsTask final : public Task {
  private:
   void see_person(const person::PersonSighting& who, const ImageView& image, Events& events);
   void see_somebody_else(Events& events);
+  void lose(Events& events);
   void say(std::string_view words, Events& events) const;
 
   behavior::FinalsParameters parameters_;

@@ -11,6 +11,9 @@
 namespace cgsr::stages {
 namespace {
 
+// A face has its name for two comparisons at least, and is compared again after six images while it is not sure.
+constexpr int kStrangerImages = 12;
+
 behavior::FollowParameters by_faces(behavior::FollowParameters follow) {
   follow.learned_distance_m = 1.0;
   return follow;
@@ -88,6 +91,20 @@ behavior::Sighting FollowPersonTask::sighting_of(const person::PersonSighting& w
   return {true, face, {}, image.width_px, image.height_px, camera_.fx_px, camera_.cx_px};
 }
 
+bool FollowPersonTask::is_with_a_stranger() const {
+  return stranger_images_ >= kStrangerImages;
+}
+
+void FollowPersonTask::look_above_the_shirt(const IdentifiedPeople& people) {
+  const person::PersonSighting& who = people.person;
+  if (who.person == person_ && who.source != person::PersonSource::kShirt) stranger_images_ = 0;
+  if (!people.expected_face) return;
+  for (const person::SeenFace& face : people.seen_faces()) {
+    if (!face.compared || !person::same_face(face.box, *people.expected_face)) continue;
+    stranger_images_ = face.person ? 0 : stranger_images_ + 1;
+  }
+}
+
 // A face of plausible size is one that lies at its place; one that identifies the person is his wherever it is.
 void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed,
                                       Decision& decision) {
@@ -119,12 +136,15 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if (person_ == person::kStranger && enrolled) person_ = *who.person;
   if (last_) last_->age += elapsed;
   if (who.person) last_.reset();
+  if (people != nullptr) look_above_the_shirt(*people);
   const bool primary = who.source == person::PersonSource::kFace || who.source == person::PersonSource::kMarker;
-  if (enrolled && who.person == person_ && (primary || !by_primary_only_)) last_ = sighting_of(who, image);
+  const bool believed = primary || !(by_primary_only_ || is_with_a_stranger());
+  if (enrolled && who.person == person_ && believed) last_ = sighting_of(who, image);
   const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
   std::string_view reason = behavior::to_string(follow.reason);
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";
   if (!last_ && state == PersonState::kUnsure) reason = "not sure who is in view";
+  if (!last_ && is_with_a_stranger()) reason = "the face above the shirt is a stranger's";
   Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
   decision.requests = first_requests();
   light_the_face(people, image, elapsed, decision);

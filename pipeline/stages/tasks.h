@@ -28,7 +28,8 @@ class FollowTask final : public Task {
   geometry::Camera camera_;
 };
 
-/// Follows a person at a distance (6.4): by face or marker while one is seen, else by the shirt. A stranger is not followed, whatever he wears. Where the face
+/// Follows a person at a distance (6.4): by face or marker while one is seen, else by the shirt. A stranger is not followed, whatever he wears, and no shirt
+/// below a face that stays a stranger's: not sure of it, Alg. 6.1 takes the shirt's word, but a negative face supersedes the shirt (6.4.3). Where the face
 /// of somebody who is there is in the dark it asks for the fill light.
 class FollowPersonTask final : public Task {
  public:
@@ -42,8 +43,11 @@ class FollowPersonTask final : public Task {
 
   /// From the next image on the person is followed only where face or marker say who it is; false: by the shirt too.
   void follow_by_primary_only(bool only) { by_primary_only_ = only; }
+  /// Whether the face above the shirt by which the person is followed has been a stranger's for so long that the shirt is somebody else's.
+  [[nodiscard]] bool is_with_a_stranger() const;
 
  private:
+  void look_above_the_shirt(const IdentifiedPeople& people);
   [[nodiscard]] behavior::Sighting sighting_of(const person::PersonSighting& who, const ImageView& image) const;
   void light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed, Decision& decision);
 
@@ -53,6 +57,7 @@ class FollowPersonTask final : public Task {
   geometry::Camera camera_;
   std::optional<behavior::FillLight> light_;
   bool by_primary_only_ = false;
+  int stranger_images_ = 0;  // in a row, of those in which a face was found above the shirt
 };
 
 /// Who Is Who in a line (6.4.1.2): turns along a line of people and tells who each is. What is said is an event with numbers, never a name.

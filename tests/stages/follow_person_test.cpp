@@ -71,6 +71,49 @@ TEST_F(FollowPerson, StandsBeforeAStrangerAndBeforeSomebodyElse) {
   }
 }
 
+// Not sure of the face, the feedback takes the shirt's word; for how long, is the task's to say.
+TEST_F(FollowPerson, StopsFollowingAShirtBelowAFaceThatStaysAStrangers) {
+  auto follower = task(4);
+  for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
+  FrameResult frame;
+  frame.people.age = Duration::zero();
+  IdentifiedPeople& people = frame.people.value;
+  people.person = face(4, 30.0);
+  people.person.source = person::PersonSource::kShirt;
+  people.person.box = {270, 200, 100, 150};
+  people.expected_face = Box{305, 150, 30, 30};
+  people.faces[0] = {
+      .number = 1, .box = {306, 152, 30, 30}, .compared = true, .person = std::nullopt, .confidence = 0.6};
+  people.face_count = 1;
+  Decision decision;
+  for (int i = 0; i < 5; ++i) decision = follower.decide(frame, image_, kImage);
+  EXPECT_FALSE(decision.halt) << "a few images may be wrong";
+  for (int i = 0; i < 30; ++i) decision = follower.decide(frame, image_, kImage);
+  EXPECT_TRUE(decision.halt);
+  EXPECT_TRUE(follower.is_with_a_stranger());
+  EXPECT_EQ(decision.reason, "the face above the shirt is a stranger's");
+  people.faces[0].person = 4;  // it is the person after all
+  decision = follower.decide(frame, image_, kImage);
+  EXPECT_FALSE(decision.halt);
+}
+
+TEST_F(FollowPerson, AStrangersFaceBesideTheShirtSaysNothingOfThePerson) {
+  auto follower = task(4);
+  for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
+  FrameResult frame;
+  frame.people.age = Duration::zero();
+  IdentifiedPeople& people = frame.people.value;
+  people.person = face(4, 30.0);
+  people.person.source = person::PersonSource::kShirt;
+  people.expected_face = Box{305, 150, 30, 30};
+  people.faces[0] = {
+      .number = 1, .box = {420, 152, 30, 30}, .compared = true, .person = std::nullopt, .confidence = 0.9};
+  people.face_count = 1;
+  Decision decision;
+  for (int i = 0; i < 60; ++i) decision = follower.decide(frame, image_, kImage);
+  EXPECT_FALSE(decision.halt);
+}
+
 TEST_F(FollowPerson, SaysThatItIsNotSureWhereAFaceHasNoNameYet) {
   auto follower = task(4);
   FrameResult frame;
