@@ -31,7 +31,7 @@ constexpr double kToNotice_s = 1.0;   // a face: the figure turns round at once,
 constexpr double kApart = 0.08;       // chromaticities of two shirts that are not the same
 constexpr std::size_t kTimes = 2;     // that a stranger takes the person's place
 constexpr std::size_t kEnrolled = 2;  // the person, and somebody who never comes
-constexpr double kWalking_s = 4.0, kBack_s = 3.0, kFront_s = 4.0, kSearch_s = 17.0, kAgain_s = 3.0, kGap_s = 0.4;
+constexpr double kWalking_s = 4.0, kBack_s = 3.0, kFront_s = 4.0, kSearch_s = 32.0, kAgain_s = 3.0, kGap_s = 0.4;
 
 using Shirt = std::array<double, 3>;
 
