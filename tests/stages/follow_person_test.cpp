@@ -40,6 +40,20 @@ class FollowPerson : public testing::Test {
     return sighting;
   }
 
+  /// Person 4 by the shirt, above which a face is expected, and a stranger's face there or elsewhere.
+  static FrameResult shirt_with_a_strangers_face(const Box& where) {
+    FrameResult frame;
+    frame.people.age = Duration::zero();
+    IdentifiedPeople& people = frame.people.value;
+    people.person = face(4, 30.0);
+    people.person.source = person::PersonSource::kShirt;
+    people.person.box = {270, 200, 100, 150};
+    people.expected_face = Box{305, 150, 30, 30};
+    people.faces[0] = {.number = 1, .box = where, .compared = true, .person = std::nullopt, .confidence = 0.6};
+    people.face_count = 1;
+    return frame;
+  }
+
   Decision see(FollowPersonTask& task, const person::PersonSighting& sighting) {
     FrameResult frame;
     frame.people.value.person = sighting;
@@ -75,16 +89,7 @@ TEST_F(FollowPerson, StandsBeforeAStrangerAndBeforeSomebodyElse) {
 TEST_F(FollowPerson, StopsFollowingAShirtBelowAFaceThatStaysAStrangers) {
   auto follower = task(4);
   for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
-  FrameResult frame;
-  frame.people.age = Duration::zero();
-  IdentifiedPeople& people = frame.people.value;
-  people.person = face(4, 30.0);
-  people.person.source = person::PersonSource::kShirt;
-  people.person.box = {270, 200, 100, 150};
-  people.expected_face = Box{305, 150, 30, 30};
-  people.faces[0] = {
-      .number = 1, .box = {306, 152, 30, 30}, .compared = true, .person = std::nullopt, .confidence = 0.6};
-  people.face_count = 1;
+  FrameResult frame = shirt_with_a_strangers_face({306, 152, 30, 30});
   Decision decision;
   for (int i = 0; i < 5; ++i) decision = follower.decide(frame, image_, kImage);
   EXPECT_FALSE(decision.halt) << "a few images may be wrong";
@@ -92,7 +97,7 @@ TEST_F(FollowPerson, StopsFollowingAShirtBelowAFaceThatStaysAStrangers) {
   EXPECT_TRUE(decision.halt);
   EXPECT_TRUE(follower.is_with_a_stranger());
   EXPECT_EQ(decision.reason, "the face above the shirt is a stranger's");
-  people.faces[0].person = 4;  // it is the person after all
+  frame.people.value.faces[0].person = 4;  // it is the person after all
   decision = follower.decide(frame, image_, kImage);
   EXPECT_FALSE(decision.halt);
 }
@@ -100,15 +105,7 @@ TEST_F(FollowPerson, StopsFollowingAShirtBelowAFaceThatStaysAStrangers) {
 TEST_F(FollowPerson, AStrangersFaceBesideTheShirtSaysNothingOfThePerson) {
   auto follower = task(4);
   for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
-  FrameResult frame;
-  frame.people.age = Duration::zero();
-  IdentifiedPeople& people = frame.people.value;
-  people.person = face(4, 30.0);
-  people.person.source = person::PersonSource::kShirt;
-  people.expected_face = Box{305, 150, 30, 30};
-  people.faces[0] = {
-      .number = 1, .box = {420, 152, 30, 30}, .compared = true, .person = std::nullopt, .confidence = 0.9};
-  people.face_count = 1;
+  const FrameResult frame = shirt_with_a_strangers_face({420, 152, 30, 30});
   Decision decision;
   for (int i = 0; i < 60; ++i) decision = follower.decide(frame, image_, kImage);
   EXPECT_FALSE(decision.halt);
