@@ -84,7 +84,7 @@ the program's own rasteriser (localizer.expectation = opengl).")
 cgsr_package(cgsr-simulator "simulated home for cgsr"
 "A plug-in for cgsr with a ray-traced home, a Segway on a virtual CAN bus and
 lamps, and the tools that draw and export its worlds.")
-cgsr_package(cgsr-map "a map refined from a drive, for cgsr"
+cgsr_package(cgsr-map "map refined from a drive, for cgsr"
 "The program behind `cgsr map refine`: it moves the parts of a measured map to
 where the images of a drive show them, and proposes edges that it lacks.")
 cgsr_package(cgsr-lab "measurements of cgsr"
