@@ -40,6 +40,20 @@ TEST(Scenario, AWorldThatIsMissingIsNamed) {
   EXPECT_THAT(SimulatedHome::make(parameters).error().message, HasSubstr("/nowhere/scenario.toml"));
 }
 
+TEST(Scenario, AddsPeopleAndMountsTheCameraElsewhere) {
+  const ScenarioFile file(
+      "robot = \"robot\"\n[camera]\nheight_m = 1.45\ndown_deg = -2.0\n[[person]]\nname = \"somebody\"\nwatches_robot = "
+      "true\nwalk = { stop = [{ at_m = [3.0, 3.0, 0.0] }] }\n");
+  const auto scenario = load_scenario(file.path(), 1);
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  ASSERT_EQ(scenario->world.person.size(), 1U);
+  EXPECT_TRUE(scenario->world.person.front().watches_robot);
+  EXPECT_EQ(scenario->world.robot.front().camera_height_m, 1.45);
+  EXPECT_EQ(scenario->world.robot.front().camera_down_deg, -2.0);
+  const ScenarioFile plain("robot = \"robot\"\n");
+  EXPECT_EQ(load_scenario(plain.path(), 1)->world.robot.front().camera_height_m, 1.20);
+}
+
 // The seed leads actors astray by what the file allows, never more, and never from where they begin.
 TEST(ScenarioProperty, SeedsMoveTheStopsWithinTheirBound) {
   const ScenarioFile file(

@@ -33,6 +33,26 @@ TEST(PortableMathProperty, AgreesWithTheLibrary) {
   EXPECT_EQ(srgb_encode(2), 1.0);
 }
 
+TEST(WatchRobot, TurnsWhoWatchesAndNobodyElse) {
+  Scene scene;
+  for (const bool watches : {true, false}) {
+    Figure figure;
+    figure.kind = FigureKind::kPerson;
+    figure.path = Path::standing({2.0, 1.0, 0.0}, degrees(30));
+    figure.watches_robot = watches;
+    scene.figures.push_back(figure);
+  }
+  SceneState state = state_at(scene, 1.0);
+  watch_robot(scene, pose_at({2.0, -3.0, 0.0}), state);
+  const auto heading_of = [&](std::size_t figure) {
+    const Eigen::Vector3d forward = state.X_WJ[figure][0].linear().col(0);
+    return arc_tangent(forward.y(), forward.x());
+  };
+  EXPECT_NEAR(heading_of(0), degrees(-90), 1e-12);
+  EXPECT_NEAR(heading_of(1), degrees(30), 1e-12);
+  EXPECT_NEAR((state.X_WJ[0][0].translation() - Eigen::Vector3d(2.0, 1.0, 0.0)).norm(), 0.0, 1e-12);
+}
+
 TEST(Path, WalksWaitsAndTurns) {
   const auto path =
       Path::make({{{0, 0, 0}, 1.0, 2.0}, {{4, 0, 0}, 2.0}, {{4, 3, 0}, 1.0, 1.0, degrees(180), true}}, 1.0, 2.0, false);

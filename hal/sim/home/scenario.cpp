@@ -51,11 +51,18 @@ std::string apply(const ScenarioSpec& spec, std::uint32_t seed, const std::files
   world.material.insert(world.material.end(), spec.material.begin(), spec.material.end());
   world.ball.insert(world.ball.end(), spec.ball.begin(), spec.ball.end());
   world.lamp.insert(world.lamp.end(), spec.lamp.begin(), spec.lamp.end());
+  world.person.insert(world.person.end(), spec.person.begin(), spec.person.end());
   if (RobotSpec* robot =
           spec.robot.empty() ? (world.robot.empty() ? nullptr : &world.robot.front()) : named(world.robot, spec.robot);
-      robot != nullptr && spec.start.given) {
-    robot->start_m = {spec.start.x_m, spec.start.y_m, 0.0};
-    robot->start_heading_deg = spec.start.heading_deg;
+      robot != nullptr) {
+    if (spec.start.given) {
+      robot->start_m = {spec.start.x_m, spec.start.y_m, 0.0};
+      robot->start_heading_deg = spec.start.heading_deg;
+    }
+    if (spec.camera.height_m > 0.0) {
+      robot->camera_height_m = spec.camera.height_m;
+      robot->camera_down_deg = spec.camera.down_deg;
+    }
   }
   for (std::size_t i = 0; i < spec.actor.size(); ++i) {
     const ActorScriptSpec& script = spec.actor[i];

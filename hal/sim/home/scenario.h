@@ -24,6 +24,8 @@ struct CameraSpec {
   bool automatic_exposure = false;
   int blur_moments = 1;
   int edge_samples = 4;
+  double height_m = 0.0;
+  double down_deg = 0.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -32,6 +34,9 @@ struct CameraSpec {
     visit.flag("automatic_exposure", self.automatic_exposure, "exposure and gain follow the mean brightness");
     visit.number("blur_moments", self.blur_moments, {1, 64}, "", "moments of an exposure that are drawn; 1: no blur");
     visit.number("edge_samples", self.edge_samples, {1, 16}, "", "rays for a pixel at an edge: 1, 4 or 16");
+    visit.number("height_m", self.height_m, {0.0, 5.0}, "m",
+                 "of the optical centre; 0: as the world has robot and tilt");
+    visit.number("down_deg", self.down_deg, {-80.0, 80.0}, "deg", "tilt below the horizon where height_m is given");
   }
   [[nodiscard]] std::string inconsistency() const {
     return edge_samples == 1 || edge_samples == 4 || edge_samples == 16 ? "" : "edge_samples is not 1, 4 or 16";
@@ -239,6 +244,7 @@ struct ScenarioSpec {
   std::vector<MaterialSpec> material;
   std::vector<BallSpec> ball;
   std::vector<LampSpec> lamp;
+  std::vector<PersonSpec> person;
   std::vector<ActorScriptSpec> actor;
   std::vector<LightScriptSpec> light;
   std::vector<WallSwitchSpec> wall_switch;
@@ -261,6 +267,7 @@ struct ScenarioSpec {
     visit.list("material", self.material, "Surfaces that the world does not have");
     visit.list("ball", self.ball, "Balls that the world does not have");
     visit.list("lamp", self.lamp, "Lamps that the world does not have");
+    visit.list("person", self.person, "People whom the world does not have");
     visit.list("actor", self.actor, "What moves otherwise than the world says");
     visit.list("light", self.light, "Lamps that change");
     visit.list("wall_switch", self.wall_switch, "Switches in the wall; off before the first");

@@ -59,6 +59,8 @@ struct Figure {
   double stride_m = 1.3;  ///< of two steps: one period of the gait.
   std::vector<HeadKey> head;
   std::vector<PresenceKey> presence;
+  bool watches_robot =
+      false;  ///< faces the robot that drives wherever it stands; its path says where, not the heading.
 };
 
 /// The poses of all joints in the world, X_WJ, for a body that stands at X_WF and has walked `walked_m` at `speed_mps` by `time_s`.

@@ -72,6 +72,17 @@ SceneState state_at(const Scene& scene, double time_s, const SwitchStates& switc
   return state;
 }
 
+void watch_robot(const Scene& scene, const Pose& X_WR, SceneState& state) {
+  for (std::size_t i = 0; i < scene.figures.size(); ++i) {
+    const Figure& figure = scene.figures[i];
+    if (!figure.watches_robot) continue;
+    const PathPoint point = figure.path.at(state.time_s);
+    const Eigen::Vector3d way = X_WR.translation() - point.p_W;
+    state.X_WJ[i] = pose_joints(figure, pose_at(point.p_W, arc_tangent(way.y(), way.x())), state.time_s, point.walked_m,
+                                point.speed_mps);
+  }
+}
+
 bool is_present(const Part& part, const SceneState& state) {
   if (part.figure < 0) return true;
   const PresenceKey& presence = state.presence[static_cast<std::size_t>(part.figure)];

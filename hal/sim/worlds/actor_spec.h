@@ -138,6 +138,7 @@ struct PersonSpec {
   std::vector<HeadSpec> head;
   std::vector<PresenceSpec> presence;
   WalkSpec walk;
+  bool watches_robot = false;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -149,6 +150,8 @@ struct PersonSpec {
     visit.list("head", self.head, "where the head looks");
     visit.list("presence", self.presence, "when the person is there, in which outfit");
     visit.section("walk", self.walk, "where the person goes");
+    visit.flag("watches_robot", self.watches_robot,
+               "turns to the robot that drives, wherever it is; headings then mean nothing");
   }
 };
 

@@ -194,6 +194,7 @@ void WorldBuilder::add_person(const PersonSpec& spec) {
   }
   Figure& figure = world_.scene.figures[static_cast<std::size_t>(sim::add_person(world_.scene, person))];
   set_script(figure, spec.walk, spec.presence, spec.line);
+  figure.watches_robot = spec.watches_robot;
   for (const HeadSpec& key : spec.head) figure.head.push_back({key.at_s, degrees(key.yaw_deg), degrees(key.pitch_deg)});
 }
 
