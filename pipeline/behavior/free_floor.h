@@ -39,6 +39,12 @@ class FreeFloor {
 
   [[nodiscard]] bool is_free(double x_m, double y_m) const;
 
+  /// The rectangle that the map covers: its corner with the least coordinates, and its sides; empty: no map.
+  [[nodiscard]] double x_min_m() const { return x_min_m_; }
+  [[nodiscard]] double y_min_m() const { return y_min_m_; }
+  [[nodiscard]] double width_m() const { return columns_ * parameters_.cell_m; }
+  [[nodiscard]] double depth_m() const { return rows_ * parameters_.cell_m; }
+
   /// How far one can go from a place straight along a heading, at most `longest_m`; 0 when the place itself is not free.
   [[nodiscard]] double way_m(double x_m, double y_m, double heading_rad, double longest_m) const;
 

@@ -42,21 +42,8 @@ LookAlong::Met* LookAlong::met_at(double bearing_rad) {
     return nearest;
   }
   if (met_count_ == kMaxPeople) return nullptr;
-  met_[met_count_] = {bearing_rad, 0, 0.0, {}};
+  met_[met_count_] = {bearing_rad, 0.0, {}};
   return &met_[met_count_++];
-}
-
-// More than four names for one face: the least likely gives way.
-void LookAlong::count(Met& met, const FaceAtBearing& face) {
-  ++met.images;
-  const auto is_it = [&face](const Vote& vote) { return vote.images > 0 && vote.number == face.number; };
-  auto vote = std::ranges::find_if(met.votes, is_it);
-  if (vote == met.votes.end()) {
-    vote = std::ranges::min_element(met.votes, {}, &Vote::confidence);
-    *vote = {face.number, 0, 0.0};
-  }
-  ++vote->images;
-  vote->confidence += face.confidence;
 }
 
 // \return whether somebody in view is to be looked at longer.
@@ -65,22 +52,18 @@ bool LookAlong::note(std::span<const FaceAtBearing> faces, double elapsed_s) {
   for (const FaceAtBearing& face : faces) {
     Met* const met = met_at(heading_rad_ + face.bearing_rad);
     if (met == nullptr) continue;
-    if (face.compared) count(*met, face);
-    if (met->images >= parameters_.images_to_name || met->waited_s >= parameters_.patience_s) continue;
+    if (face.compared) met->votes.count(face.number, face.confidence);
+    if (met->votes.images() >= parameters_.images_to_name || met->waited_s >= parameters_.patience_s) continue;
     met->waited_s += elapsed_s;
     stay = true;
   }
   return stay;
 }
 
-PersonInLine LookAlong::most_likely(const Met& met) {
-  const Vote& vote = *std::ranges::max_element(met.votes, {}, &Vote::confidence);
-  return {met.bearing_rad, vote.number, vote.confidence / std::max(1, met.images)};
-}
-
 void LookAlong::settle() {
   for (std::size_t i = 0; i < met_count_; ++i) {
-    if (met_[i].images > 0) line_[line_count_++] = most_likely(met_[i]);
+    const NameVotes& votes = met_[i].votes;
+    if (votes.images() > 0) line_[line_count_++] = {met_[i].bearing_rad, votes.number(), votes.confidence()};
   }
   const auto line = std::span(line_).first(line_count_);
   std::ranges::sort(line, std::ranges::greater{}, &PersonInLine::bearing_rad);

@@ -9,6 +9,7 @@
 
 #include "pipeline/behavior/drive_limits.h"
 #include "pipeline/behavior/look_along_parameters.h"
+#include "pipeline/behavior/name_votes.h"
 #include "pipeline/behavior/velocity.h"
 #include "platform/time.h"
 
@@ -56,22 +57,14 @@ class LookAlong {
   LookAlongDecision decide(std::span<const FaceAtBearing> faces, std::optional<double> heading_rad, Duration elapsed);
 
  private:
-  struct Vote {
-    int number = 0;
-    int images = 0;
-    double confidence = 0.0;  // their sum
-  };
   struct Met {
     double bearing_rad = 0.0;
-    int images = 0;         // in which it was known whose the face is
     double waited_s = 0.0;  // before this one
-    std::array<Vote, 4> votes{};
+    NameVotes votes{};
   };
 
   bool note(std::span<const FaceAtBearing> faces, double elapsed_s);
   Met* met_at(double bearing_rad);
-  static void count(Met& met, const FaceAtBearing& face);
-  static PersonInLine most_likely(const Met& met);
   void settle();
   LookAlongDecision tell();
 

@@ -7,6 +7,7 @@
 
 #include "pipeline/behavior/drive_limits.h"
 #include "pipeline/behavior/follow.h"
+#include "pipeline/behavior/place.h"
 #include "platform/error.h"
 #include "platform/parameters.h"
 #include "platform/time.h"
@@ -39,12 +40,6 @@ struct RouteParameters {
                  "From this bearing on the robot only turns; at smaller bearings the speed grows linearly to its full "
                  "value at zero.");
   }
-};
-
-/// A place on the floor, world frame.
-struct Place {
-  double x_m = 0.0;
-  double y_m = 0.0;
 };
 
 /// \return the places of a text like "1.5, 2; 3, 4.25"; or what is wrong with it: the piece, its number, what was expected.

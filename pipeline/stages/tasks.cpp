@@ -28,12 +28,6 @@ bool is_mostly_within(const Box& box, const ImageView& image) {
   return intersection(box, whole).area() > 0.5 * box.area();
 }
 
-behavior::PlanarPose pose_to_drive_by(const runtime::Aged<PoseEstimate>& pose) {
-  behavior::PlanarPose here = pose.value.robot;
-  here.known = here.known && pose.within(kMaxPoseAge) != nullptr;
-  return here;
-}
-
 /// What the behaviour needs of the lamp. A report that is too old says no more than that there is a board.
 behavior::LampBelief lamp_belief(const runtime::Aged<LampReport>& aged, const runtime::Aged<ShadowMasks>& shade) {
   using illumination::ObservationStatus;
@@ -59,6 +53,12 @@ behavior::LampBelief lamp_belief(const runtime::Aged<LampReport>& aged, const ru
 }
 
 }  // namespace
+
+behavior::PlanarPose pose_to_drive_by(const runtime::Aged<PoseEstimate>& pose) {
+  behavior::PlanarPose here = pose.value.robot;
+  here.known = here.known && pose.within(kMaxPoseAge) != nullptr;
+  return here;
+}
 
 Decision FollowTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   const color::TrackedObject& object = frame.objects.value.first().object;

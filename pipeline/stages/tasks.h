@@ -16,6 +16,9 @@ namespace cgsr::stages {
 inline constexpr Duration kMaxPoseAge = seconds(0.5);  ///< of a pose that a task drives by.
 inline constexpr Duration kMaxLampReportAge = seconds(0.5);
 
+/// \return where the robot is; not known where that is too old to drive by.
+behavior::PlanarPose pose_to_drive_by(const runtime::Aged<PoseEstimate>& pose);
+
 /// Keeps the tracked object centred and at a distance (3.3.2).
 class FollowTask final : public Task {
  public:

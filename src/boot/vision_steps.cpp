@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/behavior/lookouts.h"
 #include "pipeline/color/learn/learn.h"
 #include "pipeline/color/learn/model_file.h"
 #include "pipeline/localization/perceive.h"
 #include "pipeline/stages/color_stages.h"
 #include "pipeline/stages/finals_task.h"
+#include "pipeline/stages/search_people_task.h"
 #include "pipeline/stages/self_mask.h"
 #include "pipeline/stages/tasks.h"
 #include "pipeline/world/load.h"
@@ -106,7 +108,32 @@ behavior::SeekLamp seek_lamp_of(const RobotState& state) {
           config.motion};
 }
 
-Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
+/// The lookouts are planned once, before the first image.
+Result<std::unique_ptr<stages::Task>> search_people(RobotState& state) {
+  const config::Robot& config = state.setup.config;
+  const behavior::SearchPeopleParameters& parameters = config.task.search_people;
+  if (!state.vision.map) return fail("task.kind = \"search_people\" has no map to plan with");
+  const geometry::Camera camera = optics_of(state);
+  const double max_distance_m = parameters.face_width_m * camera.fx_px / parameters.min_face_px;
+  behavior::LookoutPlan plan = behavior::plan_lookouts(
+      *state.vision.map, {config.localization.start.x_m, config.localization.start.y_m},
+      {parameters.min_distance_m, max_distance_m, parameters.max_unseen_share, parameters.floor});
+  if (plan.lookouts.empty()) {
+    return fail(
+        fmt::format("task.kind = \"search_people\": from {:.2f}, {:.2f} m, where the robot starts, no place on the "
+                    "map's free floor is reached from which people could be seen",
+                    config.localization.start.x_m, config.localization.start.y_m));
+  }
+  state.report.notes.push_back(
+      fmt::format("looks for people from {} places, which see {:.0f} % of the floor within "
+                  "{:.1f} m",
+                  plan.lookouts.size(), 100.0 * plan.seen_share, max_distance_m));
+  behavior::SearchPeople search(parameters, behavior::FreeFloor(*state.vision.map, parameters.floor),
+                                std::move(plan.lookouts), config.motion);
+  return std::make_unique<stages::SearchPeopleTask>(std::move(search), parameters, camera);
+}
+
+Result<std::unique_ptr<stages::Task>> task_of(RobotState& state) {
   const config::Robot& config = state.setup.config;
   if (config.task.kind == config::TaskKind::kLamp) return std::make_unique<stages::LampTask>(seek_lamp_of(state));
   if (config.task.kind == config::TaskKind::kFollow) {
@@ -125,6 +152,7 @@ Result<std::unique_ptr<stages::Task>> task_of(const RobotState& state) {
     return std::make_unique<stages::WhoIsWhoTask>(behavior::LookAlong(config.task.line, config.motion),
                                                   optics_of(state));
   }
+  if (config.task.kind == config::TaskKind::kSearchPeople) return search_people(state);
   auto places = behavior::parse_places(config.task.route.places_m);
   if (!places) return fail(fmt::format("task.route.places_m: {}", places.error().message));
   return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places), config.motion));

@@ -125,7 +125,12 @@ struct Robot {
   }
 
   /// The task is about people who are enrolled.
-  [[nodiscard]] bool about_people() const { return follows_person() || task.kind == TaskKind::kLine; }
+  [[nodiscard]] bool about_people() const { return follows_person() || names_people(); }
+
+  /// The task is to tell who is who.
+  [[nodiscard]] bool names_people() const {
+    return task.kind == TaskKind::kLine || task.kind == TaskKind::kSearchPeople;
+  }
 
   /// The task is to follow somebody.
   [[nodiscard]] bool follows_person() const { return task.kind == TaskKind::kPerson || task.kind == TaskKind::kFinals; }
@@ -146,13 +151,12 @@ struct Robot {
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
     if (about_people() && !person.enabled()) {
-      return "task.kind = \"person\", \"line\" and \"finals\" need person.identities: the file in which cgsr people "
-             "enroll keeps "
-             "who is known; \"person\" can do with person.marker.enabled instead";
+      return "task.kind = \"person\", \"line\", \"search_people\" and \"finals\" need person.identities: the file in "
+             "which cgsr people enroll keeps who is known; \"person\" can do with person.marker.enabled instead";
     }
-    if ((task.kind == TaskKind::kLine || task.kind == TaskKind::kFinals) && !person.knows_faces()) {
-      return "task.kind = \"line\" and \"finals\" need person.identities: they tell people by their faces, not by a "
-             "marker";
+    if ((names_people() || task.kind == TaskKind::kFinals) && !person.knows_faces()) {
+      return "task.kind = \"line\", \"search_people\" and \"finals\" need person.identities: they tell people by their "
+             "faces, not by a marker";
     }
     if (task.kind == TaskKind::kFinals && task.person.number == 0) {
       return "task.kind = \"finals\" needs task.person.number, the number of the person in the identities file: who is "
@@ -162,9 +166,10 @@ struct Robot {
       return "person.fill_light needs switches.fill_light_line, the line of the light, and task.kind = \"person\" "
              "or \"finals\", which alone ask for it";
     }
-    if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp) && localization.map.empty()) {
-      return "task.kind = \"route\" and \"lamp\" need a map (localization.map): places mean nothing to a robot without "
-             "one";
+    if ((task.kind == TaskKind::kRoute || task.kind == TaskKind::kLamp || task.kind == TaskKind::kSearchPeople) &&
+        localization.map.empty()) {
+      return "task.kind = \"route\", \"lamp\" and \"search_people\" need a map (localization.map): places mean nothing "
+             "to a robot without one";
     }
     if (probes.board.probes > 0 && (localization.camera.empty() || localization.mount.empty())) {
       return "probes.board needs localization.camera and localization.mount: shadows are measured through them";

@@ -8,6 +8,7 @@
 #include "pipeline/behavior/follow_person_parameters.h"
 #include "pipeline/behavior/look_along_parameters.h"
 #include "pipeline/behavior/route.h"
+#include "pipeline/behavior/search_people_parameters.h"
 #include "pipeline/behavior/seek_lamp.h"
 #include "pipeline/calibration/marker.h"
 #include "pipeline/localization/localizer_parameters.h"
@@ -74,17 +75,21 @@ struct RobotLocalization {
 };
 
 enum class TaskKind : std::uint8_t {
-  kFollow,  ///< keep at a distance from an object.
-  kRoute,   ///< drive from place to place.
-  kLamp,    ///< Algorithm 5.2: find the lamp, back off, track with masks.
-  kPerson,  ///< keep at a distance from a person who is enrolled (6.4).
-  kLine,    ///< tell who is who in a line of people (6.4.1.2).
-  kFinals,  ///< follow a person, tell a stranger in the same shirt and a change of shirts (6.4.3).
+  kFollow,        ///< keep at a distance from an object.
+  kRoute,         ///< drive from place to place.
+  kLamp,          ///< Algorithm 5.2: find the lamp, back off, track with masks.
+  kPerson,        ///< keep at a distance from a person who is enrolled (6.4).
+  kLine,          ///< tell who is who in a line of people (6.4.1.2).
+  kSearchPeople,  ///< find people all over the home and tell where who is (6.4.1.2).
+  kFinals,        ///< follow a person, tell a stranger in the same shirt and a change of shirts (6.4.3).
 };
-inline constexpr std::array kTaskKindNames{
-    Named<TaskKind>{"follow", TaskKind::kFollow}, Named<TaskKind>{"route", TaskKind::kRoute},
-    Named<TaskKind>{"lamp", TaskKind::kLamp},     Named<TaskKind>{"person", TaskKind::kPerson},
-    Named<TaskKind>{"line", TaskKind::kLine},     Named<TaskKind>{"finals", TaskKind::kFinals}};
+inline constexpr std::array kTaskKindNames{Named<TaskKind>{"follow", TaskKind::kFollow},
+                                           Named<TaskKind>{"route", TaskKind::kRoute},
+                                           Named<TaskKind>{"lamp", TaskKind::kLamp},
+                                           Named<TaskKind>{"person", TaskKind::kPerson},
+                                           Named<TaskKind>{"line", TaskKind::kLine},
+                                           Named<TaskKind>{"finals", TaskKind::kFinals},
+                                           Named<TaskKind>{"search_people", TaskKind::kSearchPeople}};
 constexpr std::string_view to_string(TaskKind kind) {
   return word_in(kTaskKindNames, kind);
 }
@@ -96,6 +101,7 @@ struct Task {
   behavior::FollowPersonParameters person;
   behavior::LookAlongParameters line;
   behavior::FinalsParameters finals;
+  behavior::SearchPeopleParameters search_people;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -103,13 +109,15 @@ struct Task {
         "kind", self.kind, kTaskKindNames,
         "The task follow keeps at a distance from an object; route drives from place to place; lamp runs "
         "Algorithm 5.2; these two need a map. The task person keeps at a distance from somebody who is enrolled; "
-        "line tells who is who in a line of people; finals follows as person does, and tells strangers and changes of "
+        "line tells who is who in a line of people; search_people looks for people all over the map and tells where "
+        "who is; finals follows as person does, and tells strangers and changes of "
         "shirts.");
     visit.section("route", self.route, "The places and the speed of a route");
     visit.section("lamp", self.lamp, "Exploring, locating the lamp, backing off and tracking (Alg. 5.2)");
     visit.section("person", self.person, "Whom the robot follows (6.4)");
     visit.section("line", self.line, "Looking along a line of people (6.4.1.2)");
     visit.section("finals", self.finals, "Telling strangers and changes of shirts (6.4.3)");
+    visit.section("search_people", self.search_people, "Looking for people all over the home (6.4.1.2)");
   }
 };
 

@@ -176,6 +176,40 @@ TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
   EXPECT_THAT(nobody.errors, HasSubstr("there is no 'Emil'"));
 }
 
+// 6.4.1.2, spread through the home: somebody stands before the robot, which finds out where it is, says who stands where in its map, and tells of all when
+// its time is up.
+TEST_F(RunWithPeople, SaysWhereInTheHomeSomebodyStands) {
+  enroll(0, kName);
+  enroll(1, "Ben");
+  std::string scenario = read_text(CGSR_SOURCE_DIR "/config/scenarios/home-people.toml");
+  scenario.resize(scenario.find("[[person]]"));
+  replace(scenario, "\"../worlds", "\"" CGSR_SOURCE_DIR "/config/worlds");
+  replace(scenario, "height_m = 1.45", "edge_samples = 1\nheight_m = 1.45");
+  replace(scenario, "ends_at_s = 304.0", "ends_at_s = 5.5");
+  scenario +=
+      "[[person]]\nname = \"somebody\"\nidentity = 1\nwatches_robot = true\nwalk = { stop = [{ at_m = [3.0, 3.3, "
+      "0.0] }] }\n";
+  write_text(scratch_ / "scenario.toml", scenario);
+  write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-home-people.toml",
+                                               {{"sim.scenario", "\"scenario.toml\""},
+                                                {"sim.cache", "false"},
+                                                {"person.identities", "\"" + identities() + "\""},
+                                                {"localization.start.sigma_m", "0.03"},
+                                                {"localization.start.sigma_deg", "0.8"},
+                                                {"task.search_people.max_duration_s", "3.5"}}));
+  const auto run = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--json", scratch_ / "run.json"});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  std::vector<std::string> said;
+  for (const auto& event : nlohmann::json::parse(read_text(scratch_ / "run.json")).at("events")) {
+    if (event.at("source") != "says") continue;
+    said.push_back(event.at("state"));
+    EXPECT_EQ(event.at("numbers").value("number", 0.0), 2.0);
+    EXPECT_NEAR(event.at("numbers").at("x").get<double>(), 3.0, 0.35);
+    EXPECT_NEAR(event.at("numbers").at("y").get<double>(), 3.3, 0.2);
+  }
+  EXPECT_THAT(said, ::testing::ElementsAre("here is", "there stands"));
+}
+
 // 6.4.1.1 with nobody enrolled: somebody with a marker on the back walks away and is followed; then turned aside, where the shirt alone is seen. Somebody
 // else in the same shirt stands farther away all the time.
 TEST_F(RunWithPeople, FollowsAMarkerAndThenTheShirtThatItTaught) {

@@ -121,6 +121,10 @@ Result<std::string> people_line_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-people-line");
 }
 
+Result<std::string> home_people_robot_hash(const Setting& setting) {
+  return robot_hash(setting, "sim-home-people");
+}
+
 Result<std::string> people_finals_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-people-finals");
 }

@@ -200,6 +200,7 @@ constexpr std::array kRequirements{
     NamedRequirement{"who-is-who", "in a line", "right of five", at_least(4.8)},
     NamedRequirement{"who-is-who", "in a line", "stranger named as a known person", at_most(0.04)},
     NamedRequirement{"who-is-who", "in a line", "known person called a stranger", at_most(0.04)},
+    NamedRequirement{"who-is-who-home", "spread through the home", "at least four of five right", at_least(1.0)},
     NamedRequirement{"faces-caltech", "caltech / ours", "accepted and right", at_least(0.95)},
     NamedRequirement{"faces-caltech", "caltech / ours", "false acceptance, leave one out", at_most(0.03)},
     NamedRequirement{"faces-caltech", "caltech / ours", "accepted with a single image", at_most(0.0)},
