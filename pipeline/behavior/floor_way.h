@@ -30,7 +30,7 @@ class FloorWay {
   /// \return false: there is none, and no way either.
   bool begin(const Place& goal);
 
-  /// \param max_cells  that are settled now: 0.3 million instructions for 1000.  \return whether all ways are known.
+  /// \param max_cells  that are settled now: 0.5 million instructions for 1000.  \return whether all ways are known.
   bool advance(int max_cells);
 
   /// \return the length of the way from there to the goal; kInfinite_m: there is none, or it is not known yet.

@@ -28,7 +28,7 @@ struct LookoutPlan {
 /// seen (the greedy set cover, Chvatal 1979); the tour visits the nearest next and is then shortened by reversing parts of it (2-opt, Croes 1958).
 /// A wall, shelf or anything else between 1.2 and 1.7 m high hides who stands behind it.
 ///
-/// Cost: a search for way for each lookout and some 10,000 lines of sight; for the boot, not for a frame. Allocates.
+/// Cost: 1.1 billion instructions for the simulated home, most of them for lines of sight; for the boot, not for a frame. Allocates.
 LookoutPlan plan_lookouts(const world::Map& map, const Place& start, const LookoutParameters& parameters);
 
 }  // namespace cgsr::behavior

@@ -48,7 +48,7 @@ struct SearchPeopleDecision {
 /// second face near the same place is the same person's, and where two were taken for the same person the less sure one is a stranger.
 /// Ours: the dissertation says what is to be told, not how the robot finds people.
 ///
-/// Threads: one. Allocates nothing after construction; a way is worked out over several images, 0.3 million instructions in each.
+/// Threads: one. Allocates nothing after construction; a way is worked out over several images, 0.5 million instructions in each.
 class SearchPeople {
  public:
   /// \param floor  where the robot may drive.  \param lookouts  to be visited in this order (plan_lookouts).

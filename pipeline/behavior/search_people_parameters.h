@@ -17,7 +17,7 @@ struct SearchPeopleParameters {
   double patience_s = 4.0;
   double same_place_m = 1.0;
   double face_width_m = 0.17;
-  double min_face_px = 40.0;
+  double min_face_px = 42.0;
   double min_face_height_m = 1.2;
   double max_face_height_m = 2.0;
   double min_distance_m = 0.7;
@@ -41,9 +41,9 @@ struct SearchPeopleParameters {
                  "Faces whose places in the map are nearer to each other are one person's.");
     visit.number("face_width_m", self.face_width_m, {0.05, 0.5}, "m",
                  "The width of what the face detector takes for a face: the distance follows from it.");
-    visit.number(
-        "min_face_px", self.min_face_px, {10.0, 400.0}, "px",
-        "Smaller faces are not named; the greatest distance of a lookout from what is seen there follows from it.");
+    visit.number("min_face_px", self.min_face_px, {10.0, 400.0}, "px",
+                 "The width at which a usual face is named: the greatest distance of a lookout from what is seen there "
+                 "follows from it. The face of a small head counts from 0.85 of it on.");
     visit.number("min_face_height_m", self.min_face_height_m, {0.0, 3.0}, "m",
                  "What looks like a face lower above the floor is none.");
     visit.number("max_face_height_m", self.max_face_height_m, {0.0, 3.0}, "m",

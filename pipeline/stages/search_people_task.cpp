@@ -9,6 +9,8 @@
 namespace cgsr::stages {
 namespace {
 
+constexpr double kSmallHead = 0.85;  // of the width of a usual one
+
 Event event_of(const behavior::PersonTold& told) {
   const bool stranger = told.number == person::kStranger;
   Event says{"says", told.in_the_end ? "there stands" : "here is", {}};
@@ -32,7 +34,7 @@ SearchPeopleTask::SearchPeopleTask(behavior::SearchPeople search, const behavior
 
 std::optional<behavior::FaceInMap> SearchPeopleTask::in_map(const person::SeenFace& face,
                                                             const geometry::Pose& X_WC) const {
-  if (face.box.width < parameters_.min_face_px) return std::nullopt;
+  if (face.box.width < kSmallHead * parameters_.min_face_px) return std::nullopt;
   const Eigen::Vector2d ideal = camera_.ideal_of({face.box.x + face.box.width / 2, face.box.y + face.box.height / 2});
   const double depth_m = parameters_.face_width_m * camera_.fx_px / face.box.width;
   const Eigen::Vector3d p_W = X_WC * Eigen::Vector3d(depth_m * ideal.x(), depth_m * ideal.y(), depth_m);
