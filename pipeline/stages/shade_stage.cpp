@@ -21,6 +21,13 @@ render::ShadeMasks empty_masks(const render::ShadeParameters& parameters) {
   return {parameters.width, parameters.height, std::vector<std::uint8_t>(cells), std::vector<std::uint8_t>(cells)};
 }
 
+illumination::KnownLamp known_lamp(const GivenLamp& lamp) {
+  illumination::KnownLamp known;
+  known.p_WL = Eigen::Vector3d(lamp.position_m[0], lamp.position_m[1], lamp.position_m[2]);
+  known.covariance = lamp.sigma_m * lamp.sigma_m * Eigen::Matrix3d::Identity();
+  return known;
+}
+
 }  // namespace
 
 std::string_view to_string(ShadeStatus status) {
@@ -48,6 +55,7 @@ ShadeStage::ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Ca
     : map_(std::move(map)),
       camera_(camera),
       parameters_(parameters),
+      given_(known_lamp(parameters.lamp)),
       volumes_(*map_, parameters.masks),
       masks_(kMasks, empty_masks(parameters.masks)) {}
 
@@ -56,6 +64,8 @@ std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const runtime:
   const PoseEstimate* const now = pose.within(Duration::zero());
   if (now == nullptr || !now->known()) return with_events({ShadeStatus::kPoseUnknown, {}});
   const LampReport* const report = lamp.within(kMaxLampAge);
+  if (!lamp.value.has_board && parameters_.lamp.given)
+    return update(budget, now->camera.X_WC, now->camera.covariance, &given_);
   return update(budget, now->camera.X_WC, now->camera.covariance,
                 report != nullptr && report->known ? &report->lamp : nullptr);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -18,10 +19,25 @@
 
 namespace cgsr::stages {
 
+/// A lamp whose place is known beforehand: for a robot that carries no probes. Without switching nobody sees whether it burns.
+struct GivenLamp {
+  bool given = false;
+  std::array<double, 3> position_m{};
+  double sigma_m = 0.05;
+
+  template <class Self, class Visitor>
+  static void describe(Self& self, Visitor& visit) {
+    visit.flag("given", self.given, "A robot without a probe board computes shadows of the lamp below.");
+    visit.numbers("position_m", self.position_m, {-10000.0, 10000.0}, "m", "The lamp's place in the world.");
+    visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "The standard deviation of each coordinate.");
+  }
+};
+
 /// Section [shade] of a robot's file.
 struct ShadeStageParameters {
   double max_lamp_sigma_m = 0.3;
   double max_lamp_shift_m = 0.01;
+  GivenLamp lamp{};
   render::ShadeParameters masks;
 
   template <class Self, class Visitor>
@@ -32,6 +48,7 @@ struct ShadeStageParameters {
         "max_lamp_shift_m", self.max_lamp_shift_m, {0.0, 1.0}, "m",
         "The silhouettes are computed again when the lamp's estimate has moved further than this; meanwhile the old "
         "ones serve, widened by the way, unless that is longer than max_lamp_sigma_m.");
+    visit.section("lamp", self.lamp, "A lamp whose place is known without probes");
     visit.section("masks", self.masks, "Computation of the shadow masks (5.2)");
   }
 };
@@ -78,6 +95,7 @@ class ShadeStage {
 
   /// \param budget  asked before each unit of work on a new place of the lamp (Silhouettes::work_unit).
   /// \param pose  of this image: masks of an older one would lie beside the shadows.
+  /// \param lamp  of the probes; a robot without them has the lamp of its configuration, or none.
   /// \return nothing: this turn went into a new place of the lamp, the last masks stay for now.
   std::optional<Output> update(WorkBudget& budget, const runtime::Aged<PoseEstimate>& pose,
                                const runtime::Aged<LampReport>& lamp);
@@ -95,6 +113,7 @@ class ShadeStage {
   std::shared_ptr<const world::Map> map_;
   geometry::Camera camera_;
   ShadeStageParameters parameters_;
+  illumination::KnownLamp given_;
   render::ShadowVolumes volumes_;
   Pool<render::ShadeMasks> masks_;
   bool looked_last_ = false;  ///< the last turn gave masks: while a new place is prepared, the next does not.

@@ -228,8 +228,9 @@ Result<void> make_object(RobotState& state) {
   }
   const auto model = loaded_or_learned(state);
   if (!model) return tl::unexpected(model.error());
-  return state.setup.config.task.kind == config::TaskKind::kLamp ? make_ball(state, *model)
-                                                                 : make_tracker(state, *model);
+  const config::Robot& config = state.setup.config;
+  const bool by_shade = config.task.kind == config::TaskKind::kLamp || config.shade.lamp.given;
+  return by_shade ? make_ball(state, *model) : make_tracker(state, *model);
 }
 
 /// The pose against the map, where the robot has one.
@@ -261,11 +262,15 @@ Result<void> make_localization(RobotState& state) {
   return {};
 }
 
-/// The probes, where the robot carries some, and the shadows that follow from their lamp.
+/// The probes, where the robot carries some, and the shadows that follow from their lamp, or from one whose place the file gives.
 Result<void> make_light(RobotState& state) {
   const auto& board = state.calibration.board;
-  if (!board || !state.report.problems.empty()) return {};
   const config::Robot& config = state.setup.config;
+  if (config.shade.lamp.given && state.vision.map && state.calibration.camera && config.probes.board.probes == 0) {
+    state.vision.parts.make<stages::ShadeStage>(state.vision.map, *state.calibration.camera, config.shade);
+    return {};
+  }
+  if (!board || !state.report.problems.empty()) return {};
   const stages::CheckParameters check{!config.switches.probe_lamp_line.empty(), !config.switches.room_lamp_line.empty(),
                                       config.switches.probe_lamp};
   VisionParts& parts = state.vision.parts;

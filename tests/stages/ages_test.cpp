@@ -156,6 +156,19 @@ TEST_F(ShadeEdges, ALampThatItsStageDoesNotRenewIsNotUsedForLong) {
   EXPECT_EQ(stage_.update(budget_, pose, {})->status, ShadeStatus::kNoLamp);
 }
 
+// A robot without probes has the lamp of its configuration; one with probes believes these, whatever the configuration says.
+TEST_F(ShadeEdges, TheLampOfTheConfigurationCountsWithoutABoardAlone) {
+  ShadeStageParameters parameters;
+  parameters.lamp = {true, {4.0, 3.0, 2.0}, 0.05};
+  ShadeStage given(map_, camera(), parameters);
+  const auto pose = aged(known_pose(), kNow);
+  EXPECT_EQ(given.update(budget_, pose, {})->status, ShadeStatus::kPreparing);
+  EXPECT_EQ(given.update(budget_, pose, {})->status, ShadeStatus::kMasked);
+  LampReport dark;
+  dark.has_board = true;
+  EXPECT_EQ(given.update(budget_, pose, aged(dark, kNow))->status, ShadeStatus::kNoLamp);
+}
+
 TEST_F(ShadeEdges, WithoutARoomForNewMasksItSaysSo) {
   prepare();
   std::vector<ShadowMasks> held;

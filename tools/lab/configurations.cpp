@@ -125,6 +125,10 @@ Result<std::string> home_people_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-home-people");
 }
 
+Result<std::string> everything_robot_hash(const Setting& setting) {
+  return robot_hash(setting, "sim-home-everything");
+}
+
 Result<std::string> people_finals_robot_hash(const Setting& setting) {
   return robot_hash(setting, "sim-people-finals");
 }

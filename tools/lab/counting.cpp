@@ -25,7 +25,8 @@ Result<Counted> count_program(const std::string& program, const std::vector<std:
   words.insert(words.end(), arguments.begin(), arguments.end());
   const auto result = run_for_json(words, scratch);
   if (!result) return tl::unexpected(result.error());
-  Counted counted{{}, cost_of(result->at("image")), result->at("images").get<int>()};
+  const char* const path = result->contains("frame_path") ? "frame_path" : "image";
+  Counted counted{{}, cost_of(result->at("image")), cost_of(result->at(path)), result->at("images").get<int>()};
   for (const auto& [name, figures] : result->at("stages").items()) counted.stages[name] = cost_of(figures);
   return counted;
 }

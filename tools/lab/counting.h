@@ -19,6 +19,7 @@ struct Cost {
 struct Counted {
   std::map<std::string, Cost> stages;
   Cost image;
+  Cost frame_path;  ///< without what a thread of its own does on a robot: the recognition of faces.
   int images = 0;
 };
 

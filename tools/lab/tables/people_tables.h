@@ -15,6 +15,9 @@ Result<Report> who_is_who(const Setting& setting);
 /// The same spread through the home: found by a search over the map's free floor (6.4.1.2).
 Result<Report> who_is_who_home(const Setting& setting);
 
+/// What everything at once costs in the home (Fig. 5.1 and chapter 6): instructions per image.
+Result<Report> everything(const Setting& setting);
+
 /// Where people are hard to tell (6.2.4, 6.3): exchanged shirts, a white shirt at a white wall, changing light, crossing people, a dark face.
 Result<Report> people_cases(const Setting& setting);
 
@@ -26,6 +29,9 @@ Result<std::string> people_finals_robot_hash(const Setting& setting);
 
 /// All of sim-home-people, hashed.
 Result<std::string> home_people_robot_hash(const Setting& setting);
+
+/// All of sim-home-everything, hashed.
+Result<std::string> everything_robot_hash(const Setting& setting);
 
 /// All of sim-people-line, hashed.
 Result<std::string> people_line_robot_hash(const Setting& setting);
