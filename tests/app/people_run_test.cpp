@@ -185,7 +185,7 @@ TEST_F(RunWithPeople, SaysWhereInTheHomeSomebodyStands) {
   scenario.resize(scenario.find("[[person]]"));
   replace(scenario, "\"../worlds", "\"" CGSR_SOURCE_DIR "/config/worlds");
   replace(scenario, "height_m = 1.45", "edge_samples = 1\nheight_m = 1.45");
-  replace(scenario, "ends_at_s = 304.0", "ends_at_s = 4.5");
+  replace(scenario, "ends_at_s = 312.0", "ends_at_s = 4.5");
   scenario +=
       "[[person]]\nname = \"somebody\"\nidentity = 1\nwatches_robot = true\nwalk = { stop = [{ at_m = [3.0, 3.3, "
       "0.0] }] }\n";
