@@ -8,6 +8,7 @@
 #include "tools/lab/source_path.h"
 #include "tools/lab/sources.h"
 #include "tools/lab/tables/faces_caltech.h"
+#include "tools/lab/tables/people_human3.h"
 #include "tools/lab/tables/people_tables.h"
 #include "tools/lab/tables/requirements.h"
 
@@ -236,6 +237,16 @@ constexpr std::array kExperiments{
                faces_hash,
                kPersonRooms,
                {"tools/lab/tables/faces_caltech.cpp"}},
+    Experiment{"people-human3",
+               "A recorded person by the colours of shirt, skin and hair (6.2.2, 6.3)",
+               6,
+               1,
+               true,
+               false,
+               people_human3,
+               person_tracker_hash,
+               kPersonRooms,
+               {"tools/lab/tables/people_human3.cpp"}},
     Experiment{"figure-6.7",
                "What identifying people costs: face in every image, in every other one, face and shirt (6.4)",
                6,
