@@ -3,8 +3,8 @@
 
 option(CGSR_UNITY "compile the files of a room in groups" OFF)
 
-# cgsr_unity(): every target below the source folder is compiled in groups. Files whose local names clash, and files with compiler options of
-# their own (cgsr_kernels), stay apart: the results are the same bytes as without.
+# cgsr_unity(): every target below the source folder is compiled in groups (unity_groups.py). Files with compiler options or
+# definitions of their own (cgsr_kernels) stay apart: the results are the same bytes as without.
 function(cgsr_unity)
   set(lines "")
   cgsr_targets_below(${CMAKE_SOURCE_DIR} targets)
@@ -16,9 +16,10 @@ function(cgsr_unity)
     get_target_property(folder ${target} SOURCE_DIR)
     get_target_property(sources ${target} SOURCES)
     foreach(source IN LISTS sources)
+      cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE)
       get_source_file_property(own_options ${source} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
-      if(source MATCHES "\\.cpp$" AND NOT own_options)
-        cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} NORMALIZE)
+      get_source_file_property(own_definitions ${source} TARGET_DIRECTORY ${target} COMPILE_DEFINITIONS)
+      if(source MATCHES "\\.cpp$" AND NOT own_options AND NOT own_definitions)
         string(APPEND lines "${target}|${source}\n")
       endif()
     endforeach()
@@ -29,17 +30,16 @@ function(cgsr_unity)
 
   set(listed ${CMAKE_BINARY_DIR}/unity_sources.txt)
   file(WRITE ${listed} "${lines}")
-  execute_process(COMMAND python3 ${CMAKE_SOURCE_DIR}/cmake/unity_groups.py ${listed} OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND python3 ${CMAKE_SOURCE_DIR}/cmake/unity_groups.py ${listed} ${CMAKE_BINARY_DIR}/unity
+                  OUTPUT_VARIABLE groups COMMAND_ERROR_IS_FATAL ANY)
   string(REGEX MATCHALL "[^\n]+" groups "${groups}")
   foreach(line IN LISTS groups)
     string(REPLACE "|" ";" line "${line}")
     list(POP_FRONT line target group)
-    get_target_property(grouped ${target} UNITY_BUILD)
-    if(NOT grouped)
-      set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # a .cpp file that is included looks like a header
-    endif()
-    set_source_files_properties(${line} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${group})
+    set_source_files_properties(${line} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
+    target_sources(${target} PRIVATE ${group})
+    # A .cpp file that is included looks like a header, and what is local to one file is there in the next.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Wno-shadow)
   endforeach()
 endfunction()
 

@@ -1,19 +1,20 @@
 #!/usr/bin/env python3
-"""Says which files of a target may be compiled as one: those whose local names do not clash.
+"""Writes the files that a machine that builds everything from nothing compiles: each includes several files of one target.
 
-usage: unity_groups.py LIST
+usage: unity_groups.py LIST FOLDER
 
-LIST holds a line "target|file" per source file. Prints a line "target|group|file|file..." per group of at least two files. The names
-that count are those declared in an anonymous namespace at the start of a line, as clang-format leaves them; they clash with each other and
-with the types, constants and inline functions of the headers that the others include.
+LIST holds a line "target|file" per source file. Writes FOLDER/TARGET_N.cpp for every group of at least two files, and prints a line
+"target|group file|file|file..." for each. A group's file includes the headers of all its files first, so that the headers are read as they are. A
+name of an anonymous namespace that another file of the group, or a header, has as well is another one while its file is read: by a macro.
+Names that count are declared at the start of a line, as clang-format leaves them.
 """
 import functools
 import pathlib
 import re
 import sys
-from collections import defaultdict
+from collections import Counter, defaultdict
 
-MOST_LINES = 1200  # of a group: enough to share the headers' cost, little enough to keep two processors busy
+MOST_LINES = 2500  # of a group: enough to share the headers' cost, little enough to keep two processors busy
 
 # How a line that declares something for the file alone begins. The name is the first group.
 ALIAS = re.compile(r"(?:using|namespace) (?:namespace )?(?:\w+::)*(\w+)(?: = [^;]*)?;")
@@ -22,12 +23,14 @@ CONSTANT = re.compile(r"(?:static |inline |thread_local )*(?:constexpr|const|std
 TEST = re.compile(r"((?:TEST(?:_F|_P)?|INSTANTIATE_TEST_SUITE_P)\(\w+, \w+)")
 FUNCTION = re.compile(r"[\w:<>,&*\[\] ]*?(\w+)\(")
 ENUMERATORS = re.compile(r"enum (?!class)[^{;]*\{([^}]*)\}")  # an unscoped enumeration's are names of the namespace
-INNER_TYPE = re.compile(r"^ +(?:struct|class|enum class|enum) (\w+)[^;()]*\{", re.M)  # would shadow another file's type
+INNER_TYPE = re.compile(r"^ +(?:struct|class|enum class|enum) (\w+)(?: final)?(?: : [^;(){]*)? \{", re.M)  # would shadow another file's type
 
 
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.M)
+ANY_INCLUDE = re.compile(r'^#include [<"].*[>"]', re.M)
 PUBLIC = re.compile(r"^(?:(?:struct|class|enum class) (\w+)(?:;| \{| :| final)|inline [^(={\n]*?(\w+)(?:\(| =|\{|\[))", re.M)
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+FOUND_BY_OTHERS = {"PrintTo", "to_string", "describe", "main", "swap", "begin", "end"}  # templates look for these by their names
 
 
 @functools.cache
@@ -46,6 +49,11 @@ def public_names_of(header):
     return {name for names in PUBLIC.findall(header.read_text()) for name in names if name}
 
 
+@functools.cache
+def words_of(header):
+    return set(re.findall(r"\w+", header.read_text()))
+
+
 def local_names(text):
     """{name: declaration} of what the file declares for itself, in its anonymous namespaces."""
     found = {}
@@ -59,47 +67,107 @@ def local_names(text):
                 found[match.group(1)] = line if alias else ""
         for names in ENUMERATORS.findall(block):
             found.update((name, "") for name in re.findall(r"\bk[A-Z]\w*", names))
+        found.update((name, "") for name in re.findall(r"\bk[A-Z]\w*(?= = )", block))
     found.update((name, "") for name in INNER_TYPE.findall(text))
     return found
 
 
-def clash(ours, theirs):
-    """Whether a name means two things. The same alias may be declared twice."""
-    return any(name in theirs and not (line and theirs[name] == line) for name, line in ours.items())
+class File:
+    def __init__(self, name):
+        self.path = pathlib.Path(name)
+        self.text = self.path.read_text()
+        self.lines = self.text.count("\n")
+        self.locals = local_names(self.text)
+        self.headers = headers_of(self.path)
+        self.public = set().union(*map(public_names_of, self.headers))
+
+    @property
+    def stands_alone(self):
+        """Tells a header something, or includes some otherwise than as they are."""
+        return re.search(r'^(?:#(?:define|if)|extern "C")', self.text, re.M) is not None
+
+    @functools.cache
+    def can_rename(self, name):
+        """Whether every occurrence of a local name in the file means what the file declares."""
+        elsewhere = re.search(r"(?:::|\.|->)\s*%s\b" % re.escape(name), self.text)
+        return (name.isidentifier() and name not in FOUND_BY_OTHERS and not elsewhere
+                and not any(name in words_of(header) for header in self.headers))
 
 
-def groups_of(files):
-    """Puts every file into the first group that has room and no name of its own."""
-    groups = []  # [names, public names, lines, files]
-    for file in files:
-        path = pathlib.Path(file)
-        text = path.read_text()
-        if "\n#define " in text:  # tells a header something, or would go on to the next file
+class Group:
+    def __init__(self):
+        self.files, self.renamed = [], []  # of each file, the names that have to be others
+        self.lines = 0
+
+    def add(self, file):
+        """Takes the file, if there is room and names that clash can be renamed. Returns whether it did."""
+        if self.files and self.lines + file.lines > MOST_LINES:
+            return False
+        ours, theirs = set(), [set() for _ in self.files]
+        for i, other in enumerate(self.files):
+            for name, declaration in file.locals.items():
+                same = name in other.locals and not (declaration and other.locals[name] == declaration)
+                if (same and name not in self.renamed[i]) or name in other.public:
+                    ours.add(name)
+            theirs[i] |= {name for name in other.locals if name in file.public and name not in file.locals}
+        if not all(map(file.can_rename, ours)):
+            return False
+        if not all(other.can_rename(name) for other, names in zip(self.files, theirs) for name in names):
+            return False
+        for names, more in zip(self.renamed, theirs):
+            names |= more
+        self.files.append(file)
+        self.renamed.append(ours)
+        self.lines += file.lines
+        return True
+
+    def text(self):
+        includes = dict.fromkeys(line for file in self.files for line in ANY_INCLUDE.findall(file.text))
+        lines = ["// Written by cmake/unity_groups.py.", *includes]
+        for file, names in zip(self.files, self.renamed):
+            suffix = file.path.stem
+            lines += [f"#define {name} {name}_in_{suffix}" for name in sorted(names)]
+            lines.append(f'#include "{file.path}"')
+            lines += [f"#undef {name}" for name in sorted(names)]
+        return "\n".join(lines) + "\n"
+
+
+def groups_of(names):
+    """Puts every file into the first group that takes it."""
+    groups = []
+    for file in map(File, names):
+        if file.stands_alone:
             continue
-        names, lines = local_names(text), text.count("\n")
-        public = set().union(*map(public_names_of, headers_of(path)))
         for group in groups:
-            fits = not clash(names, group[0]) and not public & set(group[0]) and not group[1] & set(names)
-            if group[2] + lines <= MOST_LINES and fits:
-                group[0].update(names)
-                group[1] |= public
-                group[2] += lines
-                group[3].append(file)
+            if group.add(file):
                 break
         else:
-            groups.append([names, public, lines, [file]])
-    return [group[3] for group in groups]
+            groups.append(Group())
+            groups[-1].add(file)
+    return groups
+
+
+def write(path, text):
+    """Leaves a file as it is that holds the text: what was made from it is not made again."""
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
 
 
 def main():
     targets = defaultdict(list)
-    for line in pathlib.Path(sys.argv[1]).read_text().splitlines():
-        target, file = line.split("|")
-        targets[target].append(file)
+    pairs = [line.split("|") for line in pathlib.Path(sys.argv[1]).read_text().splitlines()]
+    uses = Counter(file for _, file in pairs)
+    for target, file in pairs:
+        if uses[file] == 1:  # a file of two targets is compiled for each
+            targets[target].append(file)
+    folder = pathlib.Path(sys.argv[2])
+    folder.mkdir(exist_ok=True)
     for target, files in targets.items():
         for number, group in enumerate(groups_of(files)):
-            if len(group) > 1:
-                print("|".join([target, f"{target}_{number}", *group]))
+            if len(group.files) > 1:
+                path = folder / f"{target}_{number}.cpp"
+                write(path, group.text())
+                print("|".join([target, str(path), *(str(file.path) for file in group.files)]))
 
 
 if __name__ == "__main__":
