@@ -10,9 +10,10 @@ namespace cgsr::behavior {
 class NameVotes {
  public:
   /// One image. More than four names for one face: the least likely gives way.
-  /// \param number  of the person; 0: a stranger.  \param confidence  of that, 0..1.
-  void count(int number, double confidence) {
+  /// \param number  of the person; 0: a stranger.  \param confidence  of that, 0..1.  \param weight  of this image among the others, > 0.
+  void count(int number, double confidence, double weight = 1.0) {
     ++images_;
+    weight_ += weight;
     const auto is_it = [number](const Vote& vote) { return vote.images > 0 && vote.number == number; };
     auto vote = std::ranges::find_if(votes_, is_it);
     if (vote == votes_.end()) {
@@ -20,7 +21,7 @@ class NameVotes {
       *vote = {number, 0, 0.0};
     }
     ++vote->images;
-    vote->confidence += confidence;
+    vote->confidence += weight * confidence;
   }
 
   /// \return in how many images it was known whose the face is.
@@ -28,7 +29,7 @@ class NameVotes {
   /// \return the most likely number; 0: a stranger, or not known.
   [[nodiscard]] int number() const { return best().number; }
   /// \return the share of the images in which it was that number, weighted by confidence.
-  [[nodiscard]] double confidence() const { return best().confidence / std::max(1, images_); }
+  [[nodiscard]] double confidence() const { return weight_ > 0.0 ? best().confidence / weight_ : 0.0; }
 
  private:
   struct Vote {
@@ -40,6 +41,7 @@ class NameVotes {
   [[nodiscard]] const Vote& best() const { return *std::ranges::max_element(votes_, {}, &Vote::confidence); }
 
   int images_ = 0;
+  double weight_ = 0.0;  // of all images
   std::array<Vote, 4> votes_{};
 };
 

@@ -24,7 +24,7 @@ PersonInMap* PeopleInMap::see(const FaceInMap& face) {
   const double share = 1.0 / std::min(++nearest->sightings, kMaxWeight);
   nearest->place.x_m += share * (face.place.x_m - nearest->place.x_m);
   nearest->place.y_m += share * (face.place.y_m - nearest->place.y_m);
-  if (face.compared) nearest->votes.count(face.number, face.confidence);
+  if (face.compared) nearest->votes.count(face.number, face.confidence, face.weight);
   return nearest;
 }
 

@@ -15,6 +15,7 @@ struct FaceInMap {
   bool compared = false;    ///< whether it is known whose it is.
   int number = 0;           ///< whose; 0: a stranger's.
   double confidence = 0.0;  ///< of that.
+  double weight = 1.0;      ///< of this sighting among the others: a face that is seen from near says more.
 };
 
 /// Somebody who was met in the home.

@@ -39,8 +39,9 @@ std::optional<behavior::FaceInMap> SearchPeopleTask::in_map(const person::SeenFa
   const double depth_m = parameters_.face_width_m * camera_.fx_px / face.box.width;
   const Eigen::Vector3d p_W = X_WC * Eigen::Vector3d(depth_m * ideal.x(), depth_m * ideal.y(), depth_m);
   if (p_W.z() < parameters_.min_face_height_m || p_W.z() > parameters_.max_face_height_m) return std::nullopt;
+  const double nearness = face.box.width / parameters_.min_face_px;
   return behavior::FaceInMap{
-      {p_W.x(), p_W.y()}, face.compared, face.person.value_or(person::kStranger), face.confidence};
+      {p_W.x(), p_W.y()}, face.compared, face.person.value_or(person::kStranger), face.confidence, nearness * nearness};
 }
 
 Decision SearchPeopleTask::decide(const FrameResult& frame, const ImageView& /*image*/, Duration elapsed) {

@@ -90,6 +90,20 @@ TEST_F(SearchPeople, TellsOfAllInTheEndAndOfAStrangerWithoutANumber) {
   EXPECT_EQ(last_.state, "has told where who is");
 }
 
+// From afar a known person may look like a stranger; what is seen from near counts by the area of the face.
+TEST_F(SearchPeople, BelievesWhatItSeesFromNearMoreThanWhatItSawFromAfar) {
+  see_face(2.4, 0.0, 0.2, std::nullopt);
+  run(2.0);
+  see_face(1.2, 0.0, 0.2, 3);
+  frame_.pose.value.camera.X_WC.translation().y() += 1.2;  // the same place
+  run(1.0);
+  frame_.people.value.face_count = 0;
+  const auto said = run(9.0);
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(said.back().state, "there stands");
+  EXPECT_EQ(said.back().numbers[0].value, 3.0);
+}
+
 TEST_F(SearchPeople, StandsBeforeAFaceUntilItIsNamed) {
   see_face(2.0, 0.0, 0.2, 3);
   frame_.people.value.faces[0].compared = false;
