@@ -174,6 +174,10 @@ struct Robot {
     if (probes.board.probes > 0 && (localization.camera.empty() || localization.mount.empty())) {
       return "probes.board needs localization.camera and localization.mount: shadows are measured through them";
     }
+    if (shade.lamp.given && (localization.map.empty() || probes.board.probes > 0)) {
+      return "shade.lamp.given = true needs a map (localization.map), from which shadows are computed, and no probes "
+             "(probes.board.probes): they find the lamp";
+    }
     if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
       return "localization.map needs localization.camera and localization.mount beside it";
     }

@@ -136,6 +136,18 @@ TEST(RealDevices, NeedThreadsAndTheClock) {
   }
 }
 
+TEST(GivenLamp, NeedsAMapAndNoProbes) {
+  Robot robot;
+  robot.shade.lamp.given = true;
+  EXPECT_THAT(robot.inconsistency(), testing::HasSubstr("localization.map"));
+  robot.localization.map = "map.obj";
+  robot.localization.camera = "camera.yaml";
+  robot.localization.mount = "mount.toml";
+  EXPECT_EQ(robot.inconsistency(), "");
+  robot.probes.board.probes = 2;
+  EXPECT_THAT(robot.inconsistency(), testing::HasSubstr("they find the lamp"));
+}
+
 TEST(Listing, ShowsEveryValueWithItsOrigin) {
   const auto robot = load_robot(CGSR_SOURCE_DIR "/config/robots/sim-home-lamp.toml");
   ASSERT_TRUE(robot) << robot.error().message;
