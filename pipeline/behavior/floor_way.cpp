@@ -32,7 +32,8 @@ FloorWay::FloorWay(const FreeFloor& floor, double cell_m)
 }
 
 Place FloorWay::middle_of(std::int32_t cell) const {
-  return {x_min_m_ + (cell % columns_ + 0.5) * cell_m_, y_min_m_ + (cell / columns_ + 0.5) * cell_m_};
+  const std::int32_t column = cell % columns_, row = cell / columns_;
+  return {x_min_m_ + (column + 0.5) * cell_m_, y_min_m_ + (row + 0.5) * cell_m_};
 }
 
 std::int32_t FloorWay::cell_at(const Place& place) const {
