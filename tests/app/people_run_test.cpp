@@ -200,7 +200,8 @@ TEST_F(RunWithPeople, SaysWhereInTheHomeSomebodyStands) {
   const auto run = run_cgsr({"run", "--config", scratch_ / "robot.toml", "--json", scratch_ / "run.json"});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
   std::vector<std::string> said;
-  for (const auto& event : nlohmann::json::parse(read_text(scratch_ / "run.json")).at("events")) {
+  const auto told = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  for (const auto& event : told.at("events")) {
     if (event.at("source") != "says") continue;
     said.push_back(event.at("state"));
     EXPECT_EQ(event.at("numbers").value("number", 0.0), 2.0);

@@ -110,7 +110,7 @@ Result<Report> people_human3(const Setting& setting) {
   if (!recorded) return tl::unexpected(recorded.error());
   const auto first = recorded->image(0);
   if (!first) return tl::unexpected(first.error());
-  const auto near = open_film(folder, kMagnified * first->bgr.size());
+  const auto near = open_film(folder, cv::Size(kMagnified * first->bgr.cols, kMagnified * first->bgr.rows));
   if (!near) return tl::unexpected(near.error());
   Report report{"people-human3", "a person by colours alone, learned from the first box", "", setting.seed, {}, {}, {}};
   const auto add = [&](const std::string& row, const Followed& followed) {
