@@ -9,40 +9,57 @@ namespace cgsr::lab {
 
 // Whose sources a table measures: a change in them makes its published rows stale.
 
-/// The stages of chapters 3 to 5 and what they hand each other: who is identified and what a task decides is not in their tables.
-inline constexpr std::array<std::string_view, 19> kVisionStages{
-    "pipeline/stages/color_stages.cpp", "pipeline/stages/color_stages.h",     "pipeline/stages/decode_stage.cpp",
-    "pipeline/stages/decode_stage.h",   "pipeline/stages/events.h",           "pipeline/stages/localize_stage.cpp",
-    "pipeline/stages/localize_stage.h", "pipeline/stages/odometry_track.cpp", "pipeline/stages/odometry_track.h",
-    "pipeline/stages/probes_stage.cpp", "pipeline/stages/probes_stage.h",     "pipeline/stages/requests.h",
-    "pipeline/stages/search_stage.cpp", "pipeline/stages/search_stage.h",     "pipeline/stages/shade_stage.cpp",
-    "pipeline/stages/shade_stage.h",    "pipeline/stages/track_stage.cpp",    "pipeline/stages/track_stage.h",
-    "pipeline/stages/tracked_objects.h"};
+/// The stages that a chapter's tables run, and what they hand each other. Who is identified and what a task decides is in none of them; masks are not in those
+/// of the trackers alone.
+inline constexpr std::array<std::string_view, 11> kColorStages{
+    "pipeline/stages/color_stages.cpp", "pipeline/stages/color_stages.h",   "pipeline/stages/decode_stage.cpp",
+    "pipeline/stages/decode_stage.h",   "pipeline/stages/events.h",         "pipeline/stages/requests.h",
+    "pipeline/stages/search_stage.cpp", "pipeline/stages/search_stage.h",   "pipeline/stages/track_stage.cpp",
+    "pipeline/stages/track_stage.h",    "pipeline/stages/tracked_objects.h"};
+inline constexpr std::array<std::string_view, 7> kLocalizationStages{
+    "pipeline/stages/decode_stage.cpp",   "pipeline/stages/decode_stage.h",   "pipeline/stages/events.h",
+    "pipeline/stages/localize_stage.cpp", "pipeline/stages/localize_stage.h", "pipeline/stages/odometry_track.cpp",
+    "pipeline/stages/odometry_track.h"};
+inline constexpr std::array<std::string_view, 3> kProbesStages{
+    "pipeline/stages/probes_stage.cpp", "pipeline/stages/probes_stage.h", "pipeline/stages/requests.h"};
+inline constexpr std::array<std::string_view, 2> kShadeStages{"pipeline/stages/shade_stage.cpp",
+                                                              "pipeline/stages/shade_stage.h"};
 
-template <std::size_t kCount>
-constexpr auto with_stages(const std::array<std::string_view, kCount>& rooms) {
-  std::array<std::string_view, kCount + kVisionStages.size()> all{};
-  std::ranges::copy(kVisionStages, std::ranges::copy(rooms, all.begin()).out);
+template <std::size_t... kCounts>
+constexpr auto all_of(const std::array<std::string_view, kCounts>&... lists) {
+  std::array<std::string_view, (kCounts + ...)> all{};
+  auto at = all.begin();
+  ((at = std::ranges::copy(lists, at).out), ...);
   return all;
 }
 
-inline constexpr auto kColorRooms = with_stages(std::array<std::string_view, 5>{
-    "pipeline/color", "pipeline/imaging", "pipeline/runtime", "tools/lab/scenes", "tools/lab/ours.cpp"});
-inline constexpr auto kLocalizationRooms = with_stages(std::array<std::string_view, 9>{
-    "pipeline/localization", "pipeline/render", "pipeline/world", "pipeline/geometry", "pipeline/imaging",
-    "pipeline/runtime", "hal/sim/render", "hal/sim/calibration", "tools/lab/localization"});
+inline constexpr auto kColorRooms =
+    all_of(std::array<std::string_view, 5>{"pipeline/color", "pipeline/imaging", "pipeline/runtime", "tools/lab/scenes",
+                                           "tools/lab/ours.cpp"},
+           kColorStages);
+inline constexpr auto kLocalizationRooms =
+    all_of(std::array<std::string_view, 9>{"pipeline/localization", "pipeline/render", "pipeline/world",
+                                           "pipeline/geometry", "pipeline/imaging", "pipeline/runtime",
+                                           "hal/sim/render", "hal/sim/calibration", "tools/lab/localization"},
+           kLocalizationStages);
 inline constexpr std::array<std::string_view, 10> kMappingRooms{
     "pipeline/mapping", "pipeline/localization", "pipeline/render",     "pipeline/world",         "pipeline/geometry",
     "pipeline/imaging", "hal/sim/render",        "hal/sim/calibration", "tools/lab/localization", "tools/lab/mapping"};
-inline constexpr auto kLampRooms = with_stages(std::array<std::string_view, 8>{
-    "pipeline/illumination", "pipeline/geometry", "pipeline/imaging", "pipeline/runtime", "hal/sim/render",
-    "hal/sim/calibration", "tools/lab/probe_room.cpp", "tools/lab/probes_trial.cpp"});
-inline constexpr auto kShadeRooms = with_stages(std::array<std::string_view, 8>{
-    "pipeline/render", "pipeline/world", "pipeline/geometry", "pipeline/runtime", "hal/sim/render",
-    "hal/sim/calibration", "tools/lab/localization", "tools/lab/shade_trial.cpp"});
-inline constexpr auto kBallRooms = with_stages(std::array<std::string_view, 8>{
-    "pipeline/color", "pipeline/imaging", "pipeline/render", "pipeline/geometry", "pipeline/runtime", "hal/sim/render",
-    "tools/lab/ball_film.cpp", "tools/lab/shade_trial.cpp"});
+inline constexpr auto kLampRooms =
+    all_of(std::array<std::string_view, 8>{"pipeline/illumination", "pipeline/geometry", "pipeline/imaging",
+                                           "pipeline/runtime", "hal/sim/render", "hal/sim/calibration",
+                                           "tools/lab/probe_room.cpp", "tools/lab/probes_trial.cpp"},
+           kLocalizationStages, kProbesStages);
+inline constexpr auto kShadeRooms =
+    all_of(std::array<std::string_view, 8>{"pipeline/render", "pipeline/world", "pipeline/geometry", "pipeline/runtime",
+                                           "hal/sim/render", "hal/sim/calibration", "tools/lab/localization",
+                                           "tools/lab/shade_trial.cpp"},
+           kColorStages, kLocalizationStages, kProbesStages, kShadeStages);
+inline constexpr auto kBallRooms =
+    all_of(std::array<std::string_view, 8>{"pipeline/color", "pipeline/imaging", "pipeline/render", "pipeline/geometry",
+                                           "pipeline/runtime", "hal/sim/render", "tools/lab/ball_film.cpp",
+                                           "tools/lab/shade_trial.cpp"},
+           kColorStages, kLocalizationStages, kProbesStages, kShadeStages);
 inline constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
 /// Not pipeline/mapping: no robot links it.
 inline constexpr std::array<std::string_view, 18> kWholeRobot{"pipeline/behavior",
