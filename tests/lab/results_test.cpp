@@ -177,6 +177,17 @@ TEST(Page, MarksWhatIsStaleAndIsOtherwiseTheSame) {
   EXPECT_EQ(fresh.find("(stale"), std::string::npos);
 }
 
+TEST(Page, SaysWhyARequirementIsNotMetWhereThatIsKnown) {
+  auto entries = entries_with(Staleness::kFresh);
+  std::vector<Row>& rows = entries[0].stored->rows;
+  rows[0].requirement = Requirement{1.0};                               // of 1.5 cm
+  rows[1].requirement = Requirement{0.9, Requirement::Kind::kAtLeast};  // of a half
+  const std::string page = page_of(entries);
+
+  EXPECT_NE(page.find("not met: ours, corrected: the gate, "), std::string::npos) << page;
+  EXPECT_NE(page.find("not met: ours, position error: the cause is not known"), std::string::npos);
+}
+
 TEST(Staleness, SaysWhatChanged) {
   const Experiment& experiment = *experiment_of("table-4.1");
   Report report = run_of(1001, {1.0}, 1, 1, 8.0);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "tools/lab/report_table.h"
+#include "tools/lab/tables/requirements.h"
 
 namespace cgsr::lab {
 namespace {
@@ -75,7 +76,10 @@ std::string provenance_of(const PageEntry& entry) {
   text += '\n';
   for (const Row& row : report.rows) {
     const auto met = row.met();
-    if (met && !*met) text += fmt::format("  - not met: {}, {}\n", row.row, row.quantity);
+    if (!met || *met) continue;
+    const auto why = unmet_because(report.name, row.row, row.quantity);
+    text +=
+        fmt::format("  - not met: {}, {}: {}\n", row.row, row.quantity, why.empty() ? "the cause is not known" : why);
   }
   return text;
 }
