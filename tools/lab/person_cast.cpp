@@ -22,10 +22,14 @@ Result<void> write(const std::filesystem::path& path, const std::string& text) {
   return {};
 }
 
+std::string cgsr_program() {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr").string();
+}
+
 }  // namespace
 
 Result<std::string> run_cgsr(std::vector<std::string> words) {
-  words.insert(words.begin(), (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr").string());
+  words.insert(words.begin(), cgsr_program());
   return run_for_text(words);
 }
 
@@ -81,6 +85,21 @@ Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits,
     if (!enrolled) ++refused;
   }
   return refused;
+}
+
+Result<nlohmann::json> run_with_people(const TableFolder& folder, const std::string& shipped, std::uint64_t seed,
+                                       const std::vector<std::string>& more) {
+  const auto robot = folder / "robot.toml";
+  const bool own_scenario = std::filesystem::exists(folder / "scenario.toml");
+  const auto written = write(robot, fmt::format("extends = \"{}\"\nperson.identities = \"identities\"\n{}",
+                                                std::filesystem::absolute(shipped).string(),
+                                                own_scenario ? "sim.scenario = \"scenario.toml\"\n" : ""));
+  if (!written) return tl::unexpected(written.error());
+  const auto json = scratch_json();
+  std::vector<std::string> words{cgsr_program(), "run",     "--config", robot.string(), "--seed", std::to_string(seed),
+                                 "--log-level",  "warning", "--json",   json.string(),  "--force"};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_for_json(words, json);
 }
 
 }  // namespace cgsr::lab

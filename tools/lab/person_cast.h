@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "platform/error.h"
 
 namespace cgsr::lab {
@@ -44,5 +46,12 @@ class Portraits {
 /// Enrols generated people, the first as number 1 and so on.
 /// \return how many were taken for somebody who was enrolled already, and therefore refused.
 Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits, const std::filesystem::path& file);
+
+/// Runs a robot's file in lock-step to the end of its scenario, with `identities` of the folder and, where it has one, with its scenario.toml.
+///
+/// \param shipped  the robot's file.  \param more  further arguments of `cgsr run`.
+/// \return the run's summary; or its exit code and what it printed.
+Result<nlohmann::json> run_with_people(const TableFolder& folder, const std::string& shipped, std::uint64_t seed,
+                                       const std::vector<std::string>& more = {});
 
 }  // namespace cgsr::lab

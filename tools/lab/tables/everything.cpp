@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "tools/lab/child.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/person_cast.h"
@@ -34,17 +33,6 @@ Result<Cost> count_probes(std::uint64_t seed) {
   return cost;
 }
 
-/// What the same run says of its schedule, without counting.
-Result<nlohmann::json> run_stages(const std::string& robot, std::uint64_t seed) {
-  const auto json = scratch_json();
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  const auto run = run_for_json({program.string(), "run", "--config", robot, "--seed", std::to_string(seed),
-                                 "--log-level", "warning", "--json", json.string(), "--force"},
-                                json);
-  if (!run) return tl::unexpected(run.error());
-  return run->at("stages");
-}
-
 void add_rows(const Counted& counted, const Cost& probes, const nlohmann::json& stages, Report& report) {
   const auto trials = static_cast<std::size_t>(counted.images);
   const auto add = [&](const std::string& row, const char* quantity, const char* unit, double value, Join join) {
@@ -57,6 +45,8 @@ void add_rows(const Counted& counted, const Cost& probes, const nlohmann::json& 
           : recognition->second.mean_minstr * recognition->second.images / std::max(1, counted.images);
   add(kRow, "image, with probes and recognition", "Minstr", counted.image.mean_minstr + probes.mean_minstr,
       Join::kWeighted);
+  add(kRow, "image, with probes and recognition, worst", "Minstr", counted.image.worst_minstr + probes.worst_minstr,
+      Join::kMax);
   add(kRow, "frame path, with probes", "Minstr", counted.frame_path.mean_minstr + probes.mean_minstr, Join::kWeighted);
   add(kRow, "frame path, with probes, worst", "Minstr", counted.frame_path.worst_minstr + probes.worst_minstr,
       Join::kMax);
@@ -98,11 +88,11 @@ Result<Report> everything(const Setting& setting) {
   setting.progress("everything at once, the lamp robot's probes");
   const auto probes = count_probes(setting.seed);
   if (!probes) return tl::unexpected(probes.error());
-  const auto stages = run_stages(robot.string(), setting.seed);
-  if (!stages) return tl::unexpected(stages.error());
+  const auto run = run_with_people(folder, shipped, setting.seed);  // what it says of its schedule
+  if (!run) return tl::unexpected(run.error());
   Report report;
   report.title = fmt::format("instructions per image of everything at once in the home, {} images", counted->images);
-  add_rows(*counted, *probes, *stages, report);
+  add_rows(*counted, *probes, run->at("stages"), report);
   report.notes = {
       "SSE2 baseline, counted by tools/count; repeats exactly. The robot localizes, computes shadows of a lamp whose "
       "place is in its file, tracks a ball, identifies people and follows one.",

@@ -15,7 +15,6 @@
 #include <fmt/format.h>
 
 #include "hal/sim/people/person.h"
-#include "tools/lab/child.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/people_script.h"
 #include "tools/lab/person_cast.h"
@@ -159,20 +158,12 @@ bool note(const std::string& words, double at_s, const Story& story, Told& told)
 
 Result<Told> watch_story(const TableFolder& folder, const std::string& shipped, std::uint64_t seed, const Story& story,
                          const std::optional<std::filesystem::path>& videos) {
-  const auto robot = folder / "robot.toml";
-  std::ofstream(robot) << fmt::format(
-      "extends = \"{}\"\nsim.scenario = \"scenario.toml\"\nperson.identities = \"identities\"\n",
-      std::filesystem::absolute(shipped).string());
-  const auto json = scratch_json();
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  std::vector<std::string> words{
-      program.string(), "run",     "--config", robot.string(), "--seed", std::to_string(seed),
-      "--log-level",    "warning", "--json",   json.string(),  "--force"};
+  std::vector<std::string> film;
   if (videos) {
     std::filesystem::create_directories(*videos);
-    words.insert(words.end(), {"--video", (*videos / fmt::format("finals-{}.mkv", seed)).string()});
+    film = {"--video", (*videos / fmt::format("finals-{}.mkv", seed)).string()};
   }
-  const auto run = run_for_json(words, json);
+  const auto run = run_with_people(folder, shipped, seed, film);
   if (!run) return tl::unexpected(run.error());
   Told told;
   for (const auto& event : run->at("events")) {

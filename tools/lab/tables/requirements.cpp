@@ -20,8 +20,7 @@ constexpr Requirement interval_within(double bound) {
 constexpr std::string_view kGate =
     "the gate, fitted over drawn homes so that false claims stay rare, refuses right poses";
 constexpr std::string_view kSettling =
-    "in drawn homes 15 % of the poses at which the alignment settles are wrong; the gate lets some of them pass and "
-    "refuses right ones";
+    "in drawn homes the alignment settles at wrong poses too; the gate lets some of them pass and refuses right ones";
 constexpr std::string_view kHalfPixel = "whether skiing is found again after its loss hangs on half a pixel";
 constexpr std::string_view kFaces = "known faces near the threshold are called strangers";
 
@@ -213,7 +212,6 @@ constexpr std::array kRequirements{
     NamedRequirement{"who-is-who-home", "spread through the home", "at least four of five right", at_least(1.0)},
     NamedRequirement{"everything", "everything at once", "image, with probes and recognition", at_most(22.0)},
     NamedRequirement{"everything", "everything at once", "frame path, with probes, worst", at_most(33.0)},
-    NamedRequirement{"everything", "everything at once", "skipped turns", at_most(0.0)},
     NamedRequirement{"everything", "everything at once", "stages whose worst run exceeds their budget at 1 GHz",
                      at_most(0.0)},
     NamedRequirement{"faces-caltech", "caltech / ours", "accepted and right", at_least(0.95)},

@@ -13,7 +13,6 @@
 #include <fmt/format.h>
 
 #include "hal/sim/people/person.h"
-#include "tools/lab/child.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/person_cast.h"
 #include "tools/lab/scenes/random.h"
@@ -114,15 +113,7 @@ Told compare(const Line& line, const nlohmann::json& run) {
 }
 
 Result<Told> look_along(const TableFolder& folder, const std::string& shipped, std::uint64_t seed, const Line& line) {
-  const auto robot = folder / "robot.toml";
-  std::ofstream(robot) << fmt::format(
-      "extends = \"{}\"\nsim.scenario = \"scenario.toml\"\nperson.identities = \"identities\"\n",
-      std::filesystem::absolute(shipped).string());
-  const auto json = scratch_json();
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  const auto run = run_for_json({program.string(), "run", "--config", robot.string(), "--seed", std::to_string(seed),
-                                 "--log-level", "warning", "--json", json.string(), "--force"},
-                                json);
+  const auto run = run_with_people(folder, shipped, seed);
   if (!run) return tl::unexpected(run.error());
   return compare(line, *run);
 }
