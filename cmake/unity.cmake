@@ -38,8 +38,7 @@ function(cgsr_unity)
     list(POP_FRONT line target group)
     set_source_files_properties(${line} TARGET_DIRECTORY ${target} PROPERTIES HEADER_FILE_ONLY ON)
     target_sources(${target} PRIVATE ${group})
-    # A .cpp file that is included looks like a header, and what is local to one file is there in the next.
-    target_compile_options(${target} PRIVATE -Wno-subobject-linkage -Wno-shadow)
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # a .cpp file that is included looks like a header
   endforeach()
 endfunction()
 

@@ -49,9 +49,14 @@ def public_names_of(header):
     return {name for names in PUBLIC.findall(header.read_text()) for name in names if name}
 
 
+def code_of(text):
+    """The text without comments and literals."""
+    return re.sub(r'//.*|"(?:[^"\\\n]|\\.)*"', "", text)
+
+
 @functools.cache
 def words_of(header):
-    return set(re.findall(r"\w+", header.read_text()))
+    return set(re.findall(r"\w+", code_of(header.read_text())))
 
 
 def local_names(text):
@@ -77,6 +82,7 @@ class File:
         self.path = pathlib.Path(name)
         self.text = self.path.read_text()
         self.lines = self.text.count("\n")
+        self.words = set(re.findall(r"\w+", code_of(self.text)))
         self.locals = local_names(self.text)
         self.headers = headers_of(self.path)
         self.public = set().union(*map(public_names_of, self.headers))
@@ -109,7 +115,9 @@ class Group:
                 same = name in other.locals and not (declaration and other.locals[name] == declaration)
                 if (same and name not in self.renamed[i]) or name in other.public:
                     ours.add(name)
-            theirs[i] |= {name for name in other.locals if name in file.public and name not in file.locals}
+            # A name that the file uses for something else, a variable of a function, say, would be shadowed.
+            theirs[i] |= {name for name, declaration in other.locals.items()
+                          if name not in file.locals and (name in file.public or (name in file.words and not declaration))}
         if not all(map(file.can_rename, ours)):
             return False
         if not all(other.can_rename(name) for other, names in zip(self.files, theirs) for name in names):

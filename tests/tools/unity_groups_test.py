@@ -33,6 +33,11 @@ class UnityGroups(unittest.TestCase):
         self.assertLess(text.index("#include <cmath>"), text.index("#define Options Options_in_b"))
         self.assertIn("#undef Options", text)
 
+    def test_a_variable_shadows_no_name_of_another_file(self):
+        self.assertEqual(self.groups(a=HALF.format(name="a", body="Options{}.x"), b="double b() { const double Options = 1.0; return Options; }\n"),
+                         [["a", "b"]])
+        subprocess.run(["g++", "-std=c++20", "-fsyntax-only", "-Wshadow", "-Werror", self.folder / "unity/room_0.cpp"], check=True)
+
     def test_a_name_that_means_something_else_too_stays(self):
         other = HALF.format(name="b", body="std::hypot(other::Options().x, 1.0)")
         self.assertEqual(self.groups(a=HALF.format(name="a", body="1.0"), b=other), [])
