@@ -73,5 +73,31 @@ TEST(TrackingBenchmark, BadInputIsRefusedInWords) {
       << short_truth.error().message;
 }
 
+TEST(TrackingBenchmark, TheRelitPartIsATableOfItsOwnWithOursMinusCsrt) {
+  CGSR_NEEDS_REAL_DATA("tracking/deer");
+  const test::ScratchFolder folder;
+  Setting setting = small_setting(folder);
+  setting.tracking.only = {"deer"};
+  setting.tracking.trackers = {"ours", "CSRT"};
+  setting.tracking.images = 8;
+  setting.tracking.no_films = true;
+
+  const auto report = measure(*experiment_of("tracking-relit"), setting);
+
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->name, "tracking-relit");
+  const double ours = figure(*report, "relit, steps / ours", "IoU");
+  EXPECT_GT(ours, 0.3);
+  EXPECT_NEAR(figure(*report, "relit, steps / ours minus CSRT", "IoU"),
+              ours - figure(*report, "relit, steps / CSRT", "IoU"), 1e-9);
+  for (const Row& row : report->rows) EXPECT_FALSE(row.row.starts_with("one pass")) << row.row;
+}
+
+TEST(TrackingBenchmark, TheCostPartIsNothingWithoutCounting) {
+  Setting setting;
+  setting.count = false;
+  EXPECT_FALSE(tracking_cost(setting));
+}
+
 }  // namespace
 }  // namespace cgsr::lab

@@ -59,6 +59,8 @@ Result<Report> measure(const Experiment& experiment, Setting setting);
 // One file each in tables/.
 Result<Report> real_video(const Setting& setting);
 Result<Report> tracking_benchmark(const Setting& setting);
+Result<Report> tracking_relit(const Setting& setting);
+Result<Report> tracking_cost(const Setting& setting);
 Result<Report> light_sweep(const Setting& setting);
 Result<Report> search_cost(const Setting& setting);
 Result<Report> figure_3_3(const Setting& setting);
