@@ -257,7 +257,9 @@ class Proposer {
     if (parallax(best, best_line) < p_.min_parallax_rad) return std::nullopt;
     if (static_cast<double>(best.size()) < p_.min_share * images_with(best_line)) return std::nullopt;
     for (const Support& support : best) loose_[support.view][support.edge].used = true;
-    return Proposal{best_line.a, best_line.b, static_cast<int>(best.size()), rms};
+    const auto longest = std::ranges::max_element(
+        best, {}, [&](const Support& support) { return loose_[support.view][support.edge].half_length; });
+    return Proposal{best_line.a, best_line.b, static_cast<int>(best.size()), rms, longest->view};
   }
 
   [[nodiscard]] std::vector<Proposal> each_once(std::vector<Proposal> found) const {

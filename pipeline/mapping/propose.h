@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,9 @@ namespace cgsr::mapping {
 struct Proposal {
   Eigen::Vector3d a = Eigen::Vector3d::Zero();  ///< its ends, W [m].
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  int images = 0;       ///< that support it.
-  double rms_px = 0.0;  ///< of the perceived edges against it.
+  int images = 0;             ///< that support it.
+  double rms_px = 0.0;        ///< of the perceived edges against it.
+  std::size_t best_view = 0;  ///< index of the view that shows most of it.
 };
 
 /// Finds edges that the map lacks: perceived edges that no edge of the map explains, in two images a line in space (the planes through both cameras

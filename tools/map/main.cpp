@@ -34,6 +34,8 @@ int run_command_line(int argc, char** argv) {
   app.add_option("--mount", options.mount, "the camera's pose on the robot, for --odometry: CSV or TOML");
   app.add_option("--output", options.output, "the refined map: .obj")->required();
   app.add_option("--proposals", options.proposals, "edges that the map lacks, as lines: .obj");
+  app.add_option("--picture", options.picture,
+                 "each of these edges in the image that shows it longest, numbered: .png");
   app.add_option("--json", options.json, "what came of each part, and the proposals");
   app.add_option("--map-sigma", options.parameters.map_sigma_m, "how far the map's parts are off, metres")
       ->check(in_range(1e-3, 1.0))

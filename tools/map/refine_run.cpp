@@ -20,8 +20,10 @@
 #include "src/input/pose_file.h"
 #include "src/input/robot_calibration.h"
 #include "src/output/output_claims.h"
+#include "src/output/picture.h"
 #include "src/output/progress.h"
 #include "src/output/text_file.h"
+#include "tools/map/proposal_sheet.h"
 
 namespace cgsr::app {
 namespace {
@@ -42,6 +44,7 @@ Result<void> claim_outputs(const RefineOptions& options) {
                .endings = {".obj"}};
   files.writes(options.output, "--output", obj);
   files.writes(options.proposals, "--proposals", obj);
+  files.writes(options.picture, "--picture", picture_file());
   files.writes(options.json, "--json", json_object());
   return files.claim();
 }
@@ -63,7 +66,8 @@ Result<geometry::Pose> mount_of(const RefineOptions& options) {
 /// What the images show, each with its pose; images without one are passed by.
 struct Drive {
   std::vector<mapping::View> views;
-  geometry::Camera camera;
+  geometry::Camera camera;  ///< that the views' edges are of: without distortion.
+  geometry::Camera lens;    ///< of the images.
 };
 
 Result<Drive> read_drive(const RefineOptions& options) {
@@ -87,7 +91,7 @@ Result<Drive> read_drive(const RefineOptions& options) {
                             options.camera));
   }
   localization::Perception perception(*camera);
-  Drive drive{{}, perception.camera()};
+  Drive drive{{}, perception.camera(), *camera};
   const PoseRow* odometry_before = nullptr;
   for (std::int64_t frame = 0;; ++frame) {
     auto next = input->next();
@@ -220,6 +224,11 @@ Result<void> run_refine(const RefineOptions& options) {
   if (auto written = write_file(options.output, text); !written) return written;
   if (!options.proposals.empty()) {
     if (auto written = write_file(options.proposals, proposals_as_obj(proposals)); !written) return written;
+  }
+  if (!options.picture.empty()) {
+    const auto sheet = proposal_sheet(proposals, drive->views, drive->lens, options.input);
+    if (!sheet) return tl::unexpected(sheet.error());
+    if (auto written = write_picture(options.picture, *sheet); !written) return written;
   }
   const auto json = report_of(*map, refined, proposals, *drive, options.parameters.map_sigma_m);
   if (!options.json.empty()) {

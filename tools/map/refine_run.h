@@ -18,6 +18,7 @@ struct RefineOptions {
   std::string mount;
   std::string output;
   std::string proposals;
+  std::string picture;
   std::string json;
   double sigma_m = 0.05;   ///< of the given poses, where their file does not say.
   double sigma_deg = 1.0;  ///< likewise.
