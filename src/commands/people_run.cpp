@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/person/face/face_descriptor.h"
+#include "pipeline/person/face/face_recognizer.h"
 #include "src/input/face_detector_file.h"
 #include "src/input/identities_file.h"
 #include "src/output/output_claims.h"
@@ -197,9 +198,9 @@ Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
 }
 
 void IdentifyRun::add_face(const ImageView& image, const Box& face) {
-  const auto descriptor = person::describe_face(image, face);
-  if (!descriptor) return;
-  const auto match = gallery_.identify(*descriptor);
+  const person::GreyPatch crop = person::face_crop(image, face);
+  if (crop.pixels.empty()) return;
+  const auto match = person::identify_crop(crop, gallery_);
   const Label number = match.label.value_or(0);
   ++seen_[number];
   ++faces_;

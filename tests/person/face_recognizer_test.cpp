@@ -1,3 +1,5 @@
+#include <array>
+
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
@@ -31,6 +33,12 @@ FaceGallery gallery_of_two() {
   return gallery;
 }
 
+FaceGallery gallery_of_one() {
+  FaceGallery gallery = gallery_of_two();
+  gallery.forget(1);
+  return gallery;
+}
+
 FaceQuestion question(std::uint32_t face, unsigned seed) {
   return {face, face_crop(view_of_grey(portrait(seed)), kFace)};
 }
@@ -56,6 +64,60 @@ TEST(SteppedRecognizer, SaysAStrangersWhereTheCropIsNone) {
   const auto answer = recognizer.answer();
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->match.label, std::nullopt);
+}
+
+// The detector's box is a fifth too small or too large, and beside the face.
+constexpr Box kRoughBoxes[] = {{52, 52, 96, 96}, {28, 28, 144, 144}, {56, 44, 100, 100}, {26, 34, 140, 140}};
+
+TEST(IdentifyCrop, NamesAFaceWhoseBoxIsRough) {
+  const FaceGallery gallery = gallery_of_two();
+  for (const Box& box : kRoughBoxes) {
+    for (const Label person : {1, 2}) {
+      const GreyPatch crop = face_crop(view_of_grey(portrait(static_cast<unsigned>(person))), box);
+      const FaceMatch match = identify_crop(crop, gallery);
+      EXPECT_EQ(match.label, person) << box.x << ' ' << box.width << ", distance " << match.distance;
+      EXPECT_LT(match.distance, 0.8 * gallery.identify(*describe_crop(crop)).distance) << box.x << ' ' << box.width;
+    }
+  }
+}
+
+// Everybody's face may be laid onto the enrolled ones: it does not become theirs.
+TEST(IdentifyCrop, NamesNoStrangerWhateverHisBox) {
+  const FaceGallery gallery = gallery_of_two();
+  for (unsigned stranger = 100; stranger < 110; ++stranger) {
+    EXPECT_FALSE(identify_crop(face_crop(view_of_grey(portrait(stranger)), kFace), gallery).label) << stranger;
+    for (const Box& box : kRoughBoxes)
+      EXPECT_FALSE(identify_crop(face_crop(view_of_grey(portrait(stranger)), box), gallery).label) << stranger;
+  }
+}
+
+TEST(IdentifyCrop, IsTheGallerysAnswerWhereTheFaceLiesAsTheEnrolledOnes) {
+  const FaceGallery gallery = gallery_of_two();
+  const GreyPatch crop = face_crop(view_of_grey(portrait(2)), kFace);
+  const FaceMatch match = identify_crop(crop, gallery), at_once = gallery.identify(*describe_crop(crop));
+  EXPECT_TRUE(gallery_of_one().identify(*describe_crop(crop)).alignment.is_small());
+  EXPECT_EQ(match.label, at_once.label);
+  EXPECT_NEAR(match.distance, at_once.distance, 0.01);
+  EXPECT_FALSE(identify_crop(crop, gallery_of_one(), 2).label) << "left out";
+}
+
+// What the fit says is what was done to the crop, and cutting it again undoes it.
+TEST(FaceAlignment, IsWhereTheFaceLiesInItsCrop) {
+  const FaceView view = view_of(*describe_face(view_of_grey(portrait(2)), kFace));
+  std::array<double, kViewSide * kViewSide> distances{};
+  const GreyPatch small = face_crop(view_of_grey(portrait(2)), {50, 50, 100, 100});
+  const FaceAlignment found = view_distances(*describe_crop(small), view, distances);
+  EXPECT_NEAR(found.a, 0.2, 0.04) << "the face is a fifth larger in the crop of a smaller box";
+  EXPECT_NEAR(found.b, 0.0, 0.03);
+  EXPECT_FALSE(found.is_small());
+  const FaceAlignment again = view_distances(*describe_crop(aligned_crop(small, found)), view, distances);
+  EXPECT_TRUE(again.is_small()) << again.a << ' ' << again.b << ' ' << again.dx_px << ' ' << again.dy_px;
+
+  const GreyPatch beside = face_crop(view_of_grey(portrait(2)), {35, 44, 120, 120});
+  const FaceAlignment moved = view_distances(*describe_crop(beside), view, distances);
+  EXPECT_NEAR(moved.dx_px, 5.0 * 128 / 120, 1.5);
+  EXPECT_NEAR(moved.dy_px, -4.0 * 128 / 120, 1.5);
+  EXPECT_TRUE(aligned_crop({}, moved).pixels.empty());
 }
 
 TEST(FaceCrop, IsWhatTheFaceIsDescribedBy) {

@@ -43,27 +43,26 @@ cv::Mat equal_contrast(const GreyPatch& patch) {
   return face;
 }
 
-// Gradients shared out over directions, then over cells (a triangle: two boxes).
-std::array<cv::Mat, kDirections> direction_planes(const cv::Mat& face) {
-  std::array<cv::Mat, kDirections> planes;
-  for (cv::Mat& plane : planes) plane = cv::Mat::zeros(kCrop_px, kCrop_px, CV_32F);
+// Gradients shared out over directions, the channels of each pixel, then over cells (a triangle: two boxes).
+cv::Mat direction_planes(const cv::Mat& face) {
+  cv::Mat planes = cv::Mat::zeros(kCrop_px, kCrop_px, CV_32FC(kDirections));
   for (int y = 1; y + 1 < kCrop_px; ++y) {
+    const float *above = face.ptr<float>(y - 1), *at = face.ptr<float>(y), *below = face.ptr<float>(y + 1);
+    float* shares = planes.ptr<float>(y);
     for (int x = 1; x + 1 < kCrop_px; ++x) {
-      const float dx = face.at<float>(y, x + 1) - face.at<float>(y, x - 1);
-      const float dy = face.at<float>(y + 1, x) - face.at<float>(y - 1, x);
+      const float dx = at[x + 1] - at[x - 1];
+      const float dy = below[x] - above[x];
       const float size = std::sqrt(dx * dx + dy * dy);
       float turn = std::atan2(dy, dx) * (kDirections / (2 * std::numbers::pi_v<float>));
       if (turn < 0) turn += kDirections;
       const int first = static_cast<int>(turn);
       const float rest = turn - static_cast<float>(first);
-      planes[static_cast<std::size_t>(first % kDirections)].at<float>(y, x) += size * (1 - rest);
-      planes[static_cast<std::size_t>((first + 1) % kDirections)].at<float>(y, x) += size * rest;
+      shares[x * kDirections + first % kDirections] += size * (1 - rest);
+      shares[x * kDirections + (first + 1) % kDirections] += size * rest;
     }
   }
-  for (cv::Mat& plane : planes) {
-    for (int pass = 0; pass < 2; ++pass)
-      cv::blur(plane, plane, {kCell_px, kCell_px}, cv::Point(-1, -1), cv::BORDER_CONSTANT);
-  }
+  for (int pass = 0; pass < 2; ++pass)
+    cv::blur(planes, planes, {kCell_px, kCell_px}, cv::Point(-1, -1), cv::BORDER_CONSTANT);
   return planes;
 }
 
@@ -78,30 +77,44 @@ std::array<float, 16> cell_weights() {
   return weights;
 }
 
+float sum_of(__m128 four) {
+  std::array<float, 4> values{};
+  _mm_storeu_ps(values.data(), four);
+  return (values[0] + values[1]) + (values[2] + values[3]);
+}
+
 // One descriptor out of the planes, normalised, limited, normalised, square root taken.
-void describe_point(const std::array<cv::Mat, kDirections>& planes, int x_px, int y_px, std::uint8_t* out) {
+void describe_point(const cv::Mat& planes, int x_px, int y_px, std::uint8_t* out) {
   static const std::array<float, 16> kWeights = cell_weights();
   std::array<float, kSiftSize> values{};
-  float squares = 0.0F;
-  for (int cell = 0; cell < 16; ++cell) {
-    const int column = cell % 4, row = cell / 4;
+  __m128 squares = _mm_setzero_ps();
+  for (std::size_t cell = 0; cell < 16; ++cell) {
+    const int column = static_cast<int>(cell % 4), row = static_cast<int>(cell / 4);
     const int x = x_px + static_cast<int>(std::lround((column - 1.5) * kCell_px));
     const int y = y_px + static_cast<int>(std::lround((row - 1.5) * kCell_px));
-    for (int d = 0; d < kDirections; ++d) {
-      const float value =
-          planes[static_cast<std::size_t>(d)].at<float>(y, x) * kWeights[static_cast<std::size_t>(cell)];
-      values[static_cast<std::size_t>(cell * kDirections + d)] = value;
-      squares += value * value;
+    const float* const directions = planes.ptr<float>(y) + std::ptrdiff_t{x} * kDirections;
+    const __m128 weight = _mm_set1_ps(kWeights[cell]);
+    for (std::size_t half = 0; half < 2; ++half) {
+      const __m128 four = _mm_mul_ps(_mm_loadu_ps(directions + 4 * half), weight);
+      _mm_storeu_ps(values.data() + cell * kDirections + 4 * half, four);
+      squares = _mm_add_ps(squares, _mm_mul_ps(four, four));
     }
   }
-  const float norm = std::sqrt(squares) + 1e-9F;
-  float sum = 0.0F;
-  for (float& value : values) {
-    value = std::min(kMaxShare, value / norm);
-    sum += value;
+  const __m128 per_norm = _mm_set1_ps(1.0F / (std::sqrt(sum_of(squares)) + 1e-9F));
+  __m128 sum = _mm_setzero_ps();
+  for (std::size_t i = 0; i < values.size(); i += 4) {
+    const __m128 four = _mm_min_ps(_mm_set1_ps(kMaxShare), _mm_mul_ps(_mm_loadu_ps(values.data() + i), per_norm));
+    _mm_storeu_ps(values.data() + i, four);
+    sum = _mm_add_ps(sum, four);
   }
-  for (std::size_t i = 0; i < values.size(); ++i)
-    out[i] = static_cast<std::uint8_t>(std::lround(255.0F * std::sqrt(values[i] / (sum + 1e-9F))));
+  const __m128 per_sum = _mm_set1_ps(255.0F * 255.0F / (sum_of(sum) + 1e-9F));
+  const auto whole = [&](std::size_t first) {
+    return _mm_cvtps_epi32(_mm_sqrt_ps(_mm_mul_ps(_mm_loadu_ps(values.data() + first), per_sum)));
+  };
+  for (std::size_t i = 0; i < values.size(); i += 16) {
+    const __m128i low = _mm_packs_epi32(whole(i), whole(i + 4)), high = _mm_packs_epi32(whole(i + 8), whole(i + 12));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out + i), _mm_packus_epi16(low, high));
+  }
 }
 
 int dot(const std::uint8_t* a, const std::uint8_t* b) {
@@ -201,6 +214,31 @@ std::array<double, kSteps> squares_from(double place) {
 
 }  // namespace
 
+bool FaceAlignment::is_small() const {
+  constexpr double kHalfFace_px = kFace_px / 2.0;
+  return std::hypot(dx_px, dy_px) + std::hypot(a, b) * kHalfFace_px <= kStep_px;
+}
+
+void FaceAlignment::move_towards(const FaceAlignment& other, double share) {
+  a += share * (other.a - a);
+  b += share * (other.b - b);
+  dx_px += share * (other.dx_px - dx_px);
+  dy_px += share * (other.dy_px - dy_px);
+}
+
+GreyPatch aligned_crop(const GreyPatch& crop, const FaceAlignment& alignment) {
+  if (crop.width_px != kCrop_px || crop.height_px != kCrop_px || crop.pixels.empty()) return crop;
+  constexpr double kMiddle_px = kFirst_px + kStep_px * (kDenseSide / 2);
+  const double along = 1 + alignment.a, across = alignment.b;
+  const cv::Matx23d to_crop(along, -across, kMiddle_px + alignment.dx_px - (along - across) * kMiddle_px, across, along,
+                            kMiddle_px + alignment.dy_px - (along + across) * kMiddle_px);
+  GreyPatch aligned{kCrop_px, kCrop_px, std::vector<std::uint8_t>(std::size_t{kCrop_px} * kCrop_px)};
+  const cv::Mat from(kCrop_px, kCrop_px, CV_8UC1, const_cast<std::uint8_t*>(crop.pixels.data()));
+  cv::Mat to(kCrop_px, kCrop_px, CV_8UC1, aligned.pixels.data());
+  cv::warpAffine(from, to, to_crop, to.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);
+  return aligned;
+}
+
 GreyPatch face_crop(const ImageView& image, const Box& face) {
   if (face.empty()) return {};
   const double margin = face.width * kMargin_px / kFace_px;
@@ -236,8 +274,8 @@ FaceView view_of(const FaceDescriptor& face) {
   return view;
 }
 
-void view_distances(const FaceDescriptor& face, const FaceView& view,
-                    std::array<double, kViewSide * kViewSide>& distances) {
+FaceAlignment view_distances(const FaceDescriptor& face, const FaceView& view,
+                             std::array<double, kViewSide * kViewSide>& distances) {
   constexpr double kUnit = 255.0 * 255.0;
   constexpr double kPerStep2 = 0.004;  // by which a point counts as farther for each squared step off its place
   std::array<Likenesses, kViewSide * kViewSide> alike;
@@ -256,6 +294,7 @@ void view_distances(const FaceDescriptor& face, const FaceView& view,
     }
     distances[static_cast<std::size_t>(i)] = 1.0 - most;
   }
+  return {moved.a, moved.b, moved.dx * kStep_px, moved.dy * kStep_px};
 }
 
 }  // namespace cgsr::person

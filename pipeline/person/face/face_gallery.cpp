@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace cgsr::person {
@@ -9,22 +10,37 @@ namespace {
 
 constexpr std::size_t kEnoughOthers = 4;
 
+using PointDistances = std::array<double, kViewSide * kViewSide>;
+
+/// How far a face is from a person.
+struct Away {
+  double distance = 1.0;
+  FaceAlignment alignment;  // against the nearest view
+};
+
 // Hair, glasses and background, which match nobody, are left out.
-double mean_of_nearest(std::array<double, kViewSide * kViewSide>& points) {
+double mean_of_nearest(PointDistances points) {
   constexpr double kCounted = 0.8;
   const auto counted = static_cast<std::ptrdiff_t>(kCounted * points.size());
   std::nth_element(points.begin(), points.begin() + counted, points.end());
   return std::accumulate(points.begin(), points.begin() + counted, 0.0) / static_cast<double>(counted);
 }
 
-double distance_to(const FaceDescriptor& face, const std::vector<FaceView>& views) {
-  std::array<double, kViewSide * kViewSide> nearest{}, one{};
+Away from(const FaceDescriptor& face, const std::vector<FaceView>& views) {
+  Away away;
+  PointDistances nearest{}, one{};
   nearest.fill(1.0);
+  double nearest_view = std::numeric_limits<double>::infinity();
   for (const FaceView& view : views) {
-    view_distances(face, view, one);
+    const FaceAlignment alignment = view_distances(face, view, one);
+    if (const double distance = mean_of_nearest(one); distance < nearest_view) {
+      nearest_view = distance;
+      away.alignment = alignment;
+    }
     for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = std::min(nearest[i], one[i]);
   }
-  return mean_of_nearest(nearest);
+  away.distance = mean_of_nearest(nearest);
+  return away;
 }
 
 }  // namespace
@@ -50,13 +66,14 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
   for (const auto& [person, views] : people_) {
     if (person == without || views.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
     ++compared;
-    const double distance = distance_to(face, views);
-    if (distance < match.distance) {
+    const Away away = from(face, views);
+    match.alignment.move_towards(away.alignment, 1.0 / static_cast<double>(compared));
+    if (away.distance < match.distance) {
       second = match.distance;
-      match.distance = distance;
+      match.distance = away.distance;
       match.nearest = person;
     } else {
-      second = std::min(second, distance);
+      second = std::min(second, away.distance);
     }
   }
   if (compared <= kEnoughOthers) second = std::min(second, parameters_.typical_stranger);

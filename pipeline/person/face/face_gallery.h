@@ -37,6 +37,8 @@ struct FaceMatch {
   std::optional<Label> nearest;  ///< the person whose face is most like it, named or not.
   double distance = 1.0;  ///< to that one: the mean of view_distances() over the nearest four fifths of the points.
   double margin = 0.0;    ///< how much farther every other person is.
+  FaceAlignment
+      alignment{};  ///< how the face lies in its crop: against the nearest view of each person, in the mean over all.
 };
 
 /// The faces that are known, several views each, and the decision whose a face is (ClassifyPriChar of Alg. 6.1). The dissertation (6.2.1) counts

@@ -7,9 +7,17 @@
 
 namespace cgsr::person {
 
+FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without) {
+  const auto face = describe_crop(crop);
+  if (!face) return {};
+  const FaceMatch match = gallery.identify(*face, without);
+  if (match.alignment.is_small()) return match;
+  const auto aligned = describe_crop(aligned_crop(crop, match.alignment));
+  return aligned ? gallery.identify(*aligned, without) : match;
+}
+
 FaceAnswer recognize(const FaceQuestion& question, const FaceGallery& gallery) {
-  const auto descriptor = describe_crop(question.crop);
-  return {question.face, descriptor ? gallery.identify(*descriptor) : FaceMatch{}};
+  return {question.face, identify_crop(question.crop, gallery)};
 }
 
 bool SteppedRecognizer::ask(FaceQuestion&& question) {

@@ -18,6 +18,7 @@
 #include "pipeline/person/face/face_descriptor.h"
 #include "pipeline/person/face/face_detector.h"
 #include "pipeline/person/face/face_gallery.h"
+#include "pipeline/person/face/face_recognizer.h"
 #include "platform/config/canonical.h"
 
 namespace cgsr::lab {
@@ -34,8 +35,8 @@ struct Photograph {
   Label who = 0;
   bool enrolled = false;
   bool found = false;
-  person::FaceDescriptor face{};
-  cv::Mat sift{};  // what the dissertation keeps: descriptors of SIFT points in the crop
+  person::GreyPatch face{};  // its crop
+  cv::Mat sift{};            // what the dissertation keeps: descriptors of SIFT points in the crop
 };
 
 /// The photographs of one collection in their order; the first of each person who has more than one are enrolled.
@@ -93,7 +94,7 @@ Result<void> describe(Collection& collection, person::FaceDetector& detector) {
     const auto face = std::max_element(faces.begin(), faces.end(), larger);
     if (face == faces.end()) continue;
     photograph.found = true;
-    photograph.face = person::describe_face(image, *face).value_or(person::FaceDescriptor{});
+    photograph.face = person::face_crop(image, *face);
     const cv::Rect crop =
         cv::Rect(cv::Rect2d(face->x, face->y, face->width, face->height)) & cv::Rect(0, 0, grey.cols, grey.rows);
     std::vector<cv::KeyPoint> points;
@@ -123,24 +124,25 @@ Label most_matches(const Collection& collection, const Photograph& seen) {
 void measure(const Collection& collection, const person::FaceMatchParameters& parameters, Report& report) {
   person::FaceGallery gallery(parameters);
   for (const Photograph& one : collection.photographs) {
-    if (one.enrolled && one.found) gallery.enroll(one.who, person::view_of(one.face));
+    if (!one.enrolled || !one.found) continue;
+    if (const auto face = person::describe_crop(one.face)) gallery.enroll(one.who, person::view_of(*face));
   }
   int seen = 0, found = 0, counted_right = 0, nearest_right = 0, accepted_right = 0, accepted_wrong = 0;
   int strangers = 0, accepted_strangers = 0, single = 0, single_accepted = 0;
   for (const Photograph& one : collection.photographs) {
     const bool known = collection.is_known(one.who);
     if (one.enrolled && known) continue;
-    const auto left_out = gallery.identify(one.face, one.who);
+    const auto left_out = person::identify_crop(one.face, gallery, one.who);
     ++strangers;
     accepted_strangers += left_out.label ? 1 : 0;
     if (!known) {
       ++single;
-      single_accepted += gallery.identify(one.face).label ? 1 : 0;
+      single_accepted += person::identify_crop(one.face, gallery).label ? 1 : 0;
       continue;
     }
     ++seen;
     found += one.found ? 1 : 0;
-    const auto match = gallery.identify(one.face);
+    const auto match = person::identify_crop(one.face, gallery);
     nearest_right += match.nearest == one.who ? 1 : 0;
     accepted_right += match.label == one.who ? 1 : 0;
     accepted_wrong += match.label && match.label != one.who ? 1 : 0;
