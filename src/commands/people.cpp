@@ -104,6 +104,8 @@ void add_people_command(CLI::App& app, int& exit_code) {
   auto* enrolling = add(*people, "enroll", "learn somebody's face from images in which it is alone", options);
   enrolling->add_option("--name", options->name, "of the person")->required();
   enrolling->add_flag("--more", options->more, "add views to somebody who is enrolled already");
+  enrolling->add_flag("--alike", options->alike,
+                      "enrol somebody although the face is taken for that of somebody who is enrolled: two look alike");
   add_images(enrolling, options);
   enrolling->callback([options, &exit_code] { exit_code = run_enroll(*options); });
 

@@ -150,9 +150,11 @@ Result<Enrolled> enroll(const PeopleOptions& options) {
   const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
   const auto chosen = most_different(*faces, max_views);
   const auto other = person_of_most(*faces, mean_distance_among(*faces, chosen), others);
-  if (other && *other != enrolled.number) {
-    return fail(fmt::format("{}: this is the face of '{}', who is enrolled already", options.input,
-                            person_name(identities, *other)));
+  if (other && *other != enrolled.number && !options.alike) {
+    return fail(
+        fmt::format("{}: this is the face of '{}', who is enrolled already; --alike enrols somebody else who "
+                    "looks like that person",
+                    options.input, person_name(identities, *other)));
   }
   auto& views = (*who)->views;
   for (const std::size_t one : chosen) views.push_back(person::view_of((*faces)[one]));

@@ -23,7 +23,8 @@ struct PeopleOptions {
   std::string cascade = kFaceCascade;
   double min_face_px = person::FaceDetectorParameters{}.min_face_px;
   bool force = false;
-  bool more = false;  ///< enroll: the person is known already, these are more views.
+  bool more = false;   ///< enroll: the person is known already, these are more views.
+  bool alike = false;  ///< enroll: somebody else than those who are enrolled, however alike they are.
 };
 
 /// Loads the detector. \return an error that names the file and Debian's package.

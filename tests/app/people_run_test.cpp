@@ -130,6 +130,10 @@ TEST_F(RunWithPeople, EnrollsTwoWhoLookAlikeAndRefusesTheSameFaceUnderAnotherNam
       run_cgsr({"people", "enroll", "--identities", identities(), "--name", "Impostor", "--input", scratch_ / "again"});
   EXPECT_NE(again.exit_code, 0);
   EXPECT_THAT(again.output + again.errors, HasSubstr("who is enrolled already"));
+  const auto twin = run_cgsr(
+      {"people", "enroll", "--identities", identities(), "--name", "Twin", "--input", scratch_ / "again", "--alike"});
+  EXPECT_EQ(twin.exit_code, 0) << twin.errors;
+  EXPECT_THAT(twin.output, HasSubstr("is number 3"));
 }
 
 // Two who are known stand side by side and look at the robot, which stands as well: whoever was identified first stays the person of interest (6.2.2), and

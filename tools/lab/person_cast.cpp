@@ -80,9 +80,13 @@ Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits,
   for (const int identity : identities) {
     const auto pictures = portraits.of(identity);
     if (!pictures) return tl::unexpected(pictures.error());
-    const auto enrolled = run_cgsr({"people", "enroll", "--identities", file.string(), "--name",
-                                    fmt::format("identity {}", identity), "--input", pictures->string()});
-    if (!enrolled) ++refused;
+    std::vector<std::string> words{"people",      "enroll",          "--identities",
+                                   file.string(), "--name",          fmt::format("identity {}", identity),
+                                   "--input",     pictures->string()};
+    if (run_cgsr(words)) continue;
+    ++refused;
+    words.emplace_back("--alike");
+    if (const auto enrolled = run_cgsr(words); !enrolled) return tl::unexpected(enrolled.error());
   }
   return refused;
 }

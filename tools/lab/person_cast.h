@@ -44,7 +44,7 @@ class Portraits {
 };
 
 /// Enrols generated people, the first as number 1 and so on.
-/// \return how many were taken for somebody who was enrolled already, and therefore refused.
+/// \return how many were taken for somebody who was enrolled already, and enrolled as somebody who looks alike (--alike).
 Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits, const std::filesystem::path& file);
 
 /// Runs a robot's file in lock-step to the end of its scenario, with `identities` of the folder and, where it has one, with its scenario.toml.

@@ -228,7 +228,7 @@ void FaceAlignment::move_towards(const FaceAlignment& other, double share) {
 
 GreyPatch aligned_crop(const GreyPatch& crop, const FaceAlignment& alignment) {
   if (crop.width_px != kCrop_px || crop.height_px != kCrop_px || crop.pixels.empty()) return crop;
-  constexpr double kMiddle_px = kFirst_px + kStep_px * (kDenseSide / 2);
+  constexpr int kMiddle_px = kFirst_px + kStep_px * (kDenseSide / 2);
   const double along = 1 + alignment.a, across = alignment.b;
   const cv::Matx23d to_crop(along, -across, kMiddle_px + alignment.dx_px - (along - across) * kMiddle_px, across, along,
                             kMiddle_px + alignment.dy_px - (along + across) * kMiddle_px);
