@@ -61,24 +61,24 @@ inline constexpr auto kBallRooms =
                                            "tools/lab/shade_trial.cpp"},
            kColorStages, kLocalizationStages, kProbesStages, kShadeStages);
 inline constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
-/// Not pipeline/mapping: no robot links it.
-inline constexpr std::array<std::string_view, 18> kWholeRobot{"pipeline/behavior",
-                                                              "pipeline/calibration",
-                                                              "pipeline/color",
-                                                              "pipeline/geometry",
-                                                              "pipeline/illumination",
-                                                              "pipeline/imaging",
-                                                              "pipeline/localization",
-                                                              "pipeline/motion",
-                                                              "pipeline/person",
-                                                              "pipeline/render",
-                                                              "pipeline/runtime",
-                                                              "pipeline/stages",
-                                                              "pipeline/world",
-                                                              "pipeline/vision_loop.cpp",
-                                                              "pipeline/vision_loop.h",
-                                                              "hal/sim",
-                                                              "hal/rmp",
-                                                              "config/scenarios"};
+/// All that a robot links which identifies nobody. Not pipeline/mapping: no robot links it.
+inline constexpr std::array<std::string_view, 17> kRobotWithoutPeople{"pipeline/behavior",
+                                                                      "pipeline/calibration",
+                                                                      "pipeline/color",
+                                                                      "pipeline/geometry",
+                                                                      "pipeline/illumination",
+                                                                      "pipeline/imaging",
+                                                                      "pipeline/localization",
+                                                                      "pipeline/motion",
+                                                                      "pipeline/render",
+                                                                      "pipeline/runtime",
+                                                                      "pipeline/stages",
+                                                                      "pipeline/world",
+                                                                      "pipeline/vision_loop.cpp",
+                                                                      "pipeline/vision_loop.h",
+                                                                      "hal/sim",
+                                                                      "hal/rmp",
+                                                                      "config/scenarios"};
+inline constexpr auto kWholeRobot = all_of(kRobotWithoutPeople, kPersonRooms);
 
 }  // namespace cgsr::lab

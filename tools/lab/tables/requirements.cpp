@@ -21,7 +21,13 @@ constexpr std::string_view kGate =
     "the gate, fitted over drawn homes so that false claims stay rare, refuses right poses";
 constexpr std::string_view kSettling =
     "in drawn homes the alignment settles at wrong poses too; the gate lets some of them pass and refuses right ones";
-constexpr std::string_view kHalfPixel = "whether skiing is found again after its loss hangs on half a pixel";
+constexpr std::string_view kHalfPixel = "eleven of 28 sequences exceed it, human3 and skiing by most";
+constexpr std::string_view kLookAlikes =
+    "nearly all of them in five of 28 sequences where another that looks alike is in view: deer, girl, human3, "
+    "skating1 and skating2";
+constexpr std::string_view kNotSeparated =
+    "a bound on the evidence that half of the right windows pass lets one in twenty of the wrong ones pass; an ideal "
+    "judge who looks everywhere would find .82";
 constexpr std::string_view kFaces = "known faces near the threshold are called strangers";
 
 // Units are those of the rows: cm, degrees, px, Minstr (million instructions per image), s, shares.
@@ -50,10 +56,9 @@ constexpr std::array kRequirements{
     NamedRequirement{"tracking-benchmark", "relit, moving spot / ours", "lost IoU", at_most(0.03)},
     NamedRequirement{"tracking-benchmark", "light estimate, printed", "error per channel", at_most(0.06)},
     NamedRequirement{"tracking-benchmark", "light estimate, printed", "chroma correlation", at_least(0.85)},
-    NamedRequirement{"tracking-benchmark", "object absent / ours", "false claims", at_most(0.02)},
-    NamedRequirement{
-        "tracking-benchmark", "object absent / ours", "found again within 15 images", at_least(0.9),
-        "finding again asks for more evidence than before, against false claims while the object is absent"},
+    NamedRequirement{"tracking-benchmark", "object absent / ours", "false claims", at_most(0.02), kLookAlikes},
+    NamedRequirement{"tracking-benchmark", "object absent / ours", "found again within 15 images", at_least(0.9),
+                     kNotSeparated},
     NamedRequirement{"tracking-benchmark", "confidence, all folds", "calibration error", at_most(0.05)},
     NamedRequirement{"tracking-benchmark", "cost at 640x480 / ours", "mean", at_most(10.0)},
     NamedRequirement{"tracking-benchmark", "cost at 640x480 / ours", "worst", at_most(14.0)},
