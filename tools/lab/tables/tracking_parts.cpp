@@ -50,6 +50,7 @@ bool is_of_light_note(const std::string& note) {
 
 Result<Report> tracking_relit(const Setting& setting) {
   Setting relit = setting;
+  if (relit.tracking.output == TrackingOptions{}.output) relit.tracking.output = "out/tracking-relit";
   relit.tracking.parts = {std::string(to_string(BenchmarkPart::kRelit))};
   auto report = tracking_benchmark(relit);
   if (!report) return report;

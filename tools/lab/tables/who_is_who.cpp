@@ -70,6 +70,7 @@ Line draw_line(std::uint64_t seed) {
 struct Told {
   int right = 0, known_as_stranger = 0, known_as_other = 0, known_unseen = 0;
   bool stranger_as_known = false, stranger_unseen = false;
+  bool taken_for_another = false;   // somebody, at enrolment
   int too_many = 0;                 // told of where nobody stands
   std::array<int, kPeople> said{};  // from the left; kNothing: nothing was told of the place
 };
@@ -131,10 +132,11 @@ std::string describe(std::uint64_t seed, const Line& line, const Told& told) {
 
 void add_rows(const std::vector<Told>& lines, std::uint64_t seed, Report& report) {
   const int count = static_cast<int>(lines.size());
-  std::vector<double> right;
+  std::vector<double> right, strict;
   int too_many = 0, strangers = 0, strangers_unseen = 0;
   for (const Told& told : lines) {
     right.push_back(told.right);
+    strict.push_back(told.taken_for_another ? 0 : told.right);
     too_many += told.too_many;
     strangers += told.stranger_as_known ? 1 : 0;
     strangers_unseen += told.stranger_unseen ? 1 : 0;
@@ -145,6 +147,9 @@ void add_rows(const std::vector<Told>& lines, std::uint64_t seed, Report& report
     report.rows.push_back(mean_row("in a line", quantity, "", shares, seed));
   };
   report.rows.push_back(mean_row("in a line", "right of five", "", right, seed));
+  // Without the operator who enrols people who look alike the numbers of that line are others'.
+  report.rows.push_back(
+      mean_row("in a line", "right of five, none where somebody is taken for another at enrolment", "", strict, seed));
   report.rows.push_back(share_row("in a line", "stranger named as a known person", strangers, count));
   add_known("known person called a stranger", &Told::known_as_stranger);
   add_known("known person named as another", &Told::known_as_other);
@@ -180,6 +185,7 @@ Result<Report> who_is_who(const Setting& setting) {
     refused += *turned_away;
     auto told = look_along(folder, shipped, seed, line);
     if (!told) return tl::unexpected(told.error());
+    told->taken_for_another = *turned_away > 0;
     if (told->right < static_cast<int>(kPeople)) wrong.push_back(describe(seed, line, *told));
     lines.push_back(*told);
   }

@@ -220,8 +220,7 @@ Result<Report> who_is_who_home(const Setting& setting) {
       "the wheels slip by 5 "
       "%.",
       "Somebody is found where a person is told of within a metre in the end, at most 5 minutes after the run began. "
-      "Who "
-      "is not found at all counts 300 s.",
+      "Who is not found at all counts 300 s.",
       fmt::format("The simulator has {} faces; every cast takes five of them.", sim::kIdentities)};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
