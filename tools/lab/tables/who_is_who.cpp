@@ -143,6 +143,7 @@ void add_rows(const std::vector<Told>& lines, std::uint64_t seed, Report& report
   }
   const auto add_known = [&](const char* quantity, int Told::*of_cast) {
     std::vector<double> shares;
+    shares.reserve(lines.size());
     for (const Told& told : lines) shares.push_back(told.*of_cast / static_cast<double>(kKnown));
     report.rows.push_back(mean_row("in a line", quantity, "", shares, seed));
   };

@@ -168,6 +168,7 @@ void add_rows(const std::vector<Told>& casts, std::uint64_t seed, Report& report
   constexpr const char* kRow = "spread through the home";
   const auto add_mean = [&](const char* quantity, const char* unit, const auto& of_cast) {
     std::vector<double> values;
+    values.reserve(casts.size());
     for (const Told& told : casts) values.push_back(of_cast(told));
     report.rows.push_back(mean_row(kRow, quantity, unit, values, seed));
   };
