@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/geometry/pose.h"
+#include "pipeline/global_localization/panorama.h"
+#include "pipeline/global_localization/parameters.h"
+#include "pipeline/global_localization/place_index.h"
+#include "pipeline/localization/correction.h"
+#include "pipeline/world/map.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::global_localization {
+
+/// A place that may be the robot's.
+struct Candidate {
+  geometry::Pose X_WR =
+      geometry::Pose::Identity();  ///< where the robot was in the first image; tried: by the localizer.
+  float likeness = 0.0F;           ///< of the panoramas, at most 1.
+  bool tried = false;
+  int corrected = 0;           ///< images of the turn that corrected it.
+  localization::Prior last{};  ///< tried: the camera's pose in the last of these images.
+};
+
+/// \return whether two poses on the floor are that near to each other.
+bool are_near(const geometry::Pose& a, const geometry::Pose& b, double distance_m, double turn_rad);
+
+/// \return a grid of places over the map, those where the robot may stand.
+std::vector<Eigen::Vector2d> grid_of_places(const world::Map& map, double spacing_m,
+                                            const std::function<bool(double x_m, double y_m)>& may_stand);
+
+/// The places of an index that are most like what was seen, each in the heading that it is seen from.
+class CandidateSearch {
+ public:
+  /// \param index  outlives it.
+  CandidateSearch(const PlaceIndex& index, const GlobalLocalizerParameters& parameters);
+
+  void restart();
+
+  /// Compares, as far as the budget goes: a unit for each place. \return whether the candidates are known.
+  bool go_on(const Panorama& seen, WorkBudget& budget);
+
+  /// The most alike first.
+  [[nodiscard]] std::span<const Candidate> candidates() const { return candidates_; }
+  [[nodiscard]] std::span<Candidate> candidates() { return candidates_; }
+
+ private:
+  /// Places about a candidate, as far as they were compared.
+  struct About {
+    std::size_t next = 0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their offsets and turns, metres and radians, by weight.
+    double weights = 0.0;
+  };
+
+  void propose(std::size_t place, const Panorama::Likeness& likeness);
+  bool sharpen(const Panorama& seen, WorkBudget& budget);
+
+  const PlaceIndex* index_;
+  GlobalLocalizerParameters parameters_;
+  std::vector<Candidate> candidates_;
+  std::size_t next_place_ = 0;
+  std::size_t sharpened_ = 0;  ///< candidates.
+  About about_;                ///< the next one.
+};
+
+}  // namespace cgsr::global_localization

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/geometry/camera.h"
+#include "pipeline/geometry/pose.h"
+#include "pipeline/global_localization/candidates.h"
+#include "pipeline/global_localization/panorama.h"
+#include "pipeline/global_localization/parameters.h"
+#include "pipeline/global_localization/place_index.h"
+#include "pipeline/global_localization/turn.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/localization/pose_tracker.h"
+#include "pipeline/world/map.h"
+#include "platform/image_view.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::global_localization {
+
+/// How far the search for the first pose has come.
+enum class Phase : std::uint8_t {
+  kTurning,    ///< the robot should turn on the spot; images of all around are collected.
+  kComparing,  ///< from here on it should stand: they are compared with the map from everywhere.
+  kTrying,     ///< the localizer tries the most alike places.
+  kSettling,   ///< the best one is corrected by the images that come now.
+  kFound,
+  kAmbiguous,  ///< more than one place explains the images.
+  kNotFound,   ///< none does.
+};
+
+/// \return lower_case word.
+std::string_view to_string(Phase phase);
+
+/// The pose of a robot that was put down anywhere in its map, without a marker or a last run. While it turns on the spot once, twelve images make a
+/// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are handed to the
+/// localizer of chapter 4, with the images of the turn and the odometry between them. A place is the robot's when the localizer corrects it in several of
+/// these images and no other place in more than half as many.
+/// Ours: the dissertation starts from a known pose (4.1).
+///
+/// What perceives an image's edges comes before all units of work, as for the localizer. Threads: one caller at a time. Allocates nothing after
+/// construction.
+class GlobalLocalizer {
+ public:
+  /// \param map, localizer  outlive it; nobody else uses the localizer until there is an answer.  \param camera  with its lens, as the localizer's.
+  /// \param places_m  where the robot may be (grid_of_places), at least one.
+  GlobalLocalizer(const world::Map& map, const geometry::Camera& camera, const geometry::Pose& X_RC,
+                  std::vector<Eigen::Vector2d> places_m, localization::Localizer& localizer,
+                  const localization::PoseTrackerParameters& tracking, const GlobalLocalizerParameters& parameters);
+
+  /// \param image  as Localizer::correct takes it.  \param mask  likewise.
+  Phase update(const ImageView& image, const Motion& motion, WorkBudget& budget, const std::uint8_t* mask = nullptr);
+
+  /// Whether update() will look at the image that comes with this motion, not at its motion alone.
+  [[nodiscard]] bool looks_at(const Motion& motion) const;
+
+  /// Begins to turn again; what was worked out of the map stays.
+  void restart();
+
+  [[nodiscard]] Phase phase() const { return phase_; }
+  /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned all the way it should stand; but
+  /// where it then looks at a bare wall it turns on, until an image confirms the pose.
+  [[nodiscard]] bool wants_turn() const { return phase_ == Phase::kTurning || settling_images_ > 0; }
+  /// The camera's pose at the last image; with kFound.
+  [[nodiscard]] const localization::TrackedPose& found() const { return tracker_.now(); }
+  /// The most alike first; from kTrying on.
+  [[nodiscard]] std::span<const Candidate> candidates() const { return search_.candidates(); }
+
+ private:
+  bool try_candidates(WorkBudget& budget, const std::uint8_t* mask);
+  [[nodiscard]] bool worth_trying(const Candidate& candidate) const;
+  void begin_trial(const Candidate& candidate);
+  void end_trial(Candidate& candidate);
+  [[nodiscard]] Phase verdict();
+  void begin_settling(const Candidate& candidate);
+  void settle(const ImageView& image, const Motion& motion, WorkBudget& budget, const std::uint8_t* mask);
+
+  geometry::Pose X_RC_;
+  GlobalLocalizerParameters parameters_;
+  localization::Localizer* localizer_;
+  localization::PoseTracker tracker_;
+  Turn turn_;
+  PlaceIndex index_;
+  CandidateSearch search_;
+  Phase phase_ = Phase::kTurning;
+  Panorama seen_;
+  bool gathered_ = false;          ///< seen_ is.
+  std::size_t trial_ = 0;          ///< candidate under trial.
+  std::size_t next_keyframe_ = 0;  ///< that it sees.
+  int failed_ = 0;                 ///< images that did not correct it.
+  bool under_trial_ = false;
+  bool looking_ = false;                                     ///< at next_keyframe_, since an earlier image.
+  geometry::Pose X_OR_before_ = geometry::Pose::Identity();  ///< at the last image while it settles.
+  int settling_images_ = 0;                                  ///< that did not confirm the pose.
+};
+
+}  // namespace cgsr::global_localization

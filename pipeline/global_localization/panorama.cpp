@@ -1,0 +1,144 @@
+#include "pipeline/global_localization/panorama.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace cgsr::global_localization {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kCell = 2.0 * kPi / Panorama::kAzimuths;  // radians
+constexpr double kLowest = -kPi / 6.0;
+constexpr double kStep = 0.5 * kCell;  // along an edge
+
+int wrapped(int index, int count) {
+  return ((index % count) + count) % count;
+}
+
+/// A number between two cells: the lower one, and the share of the upper one.
+struct Between {
+  explicit Between(double place) : lower(static_cast<int>(std::floor(place))), share(place - std::floor(place)) {}
+  int lower;
+  double share;
+};
+
+}  // namespace
+
+void Panorama::clear() {
+  std::ranges::fill(cells_, 0.0F);
+}
+
+void Panorama::add_point(double azimuth, double elevation, double course, double amount) {
+  const Between a(azimuth / kCell - 0.5);
+  const Between e((elevation - kLowest) / kCell - 0.5);
+  const Between c(course / (kPi / kCourses));
+  for (int corner = 0; corner < 8; ++corner) {
+    const int da = corner & 1;
+    const int de = (corner >> 1) & 1;
+    const int dc = corner >> 2;
+    if (e.lower + de < 0 || e.lower + de >= kElevations) continue;
+    const double share =
+        (da != 0 ? a.share : 1.0 - a.share) * (de != 0 ? e.share : 1.0 - e.share) * (dc != 0 ? c.share : 1.0 - c.share);
+    row(wrapped(c.lower + dc, kCourses), e.lower + de)[wrapped(a.lower + da, kAzimuths)] +=
+        static_cast<float>(amount * share);
+  }
+}
+
+void Panorama::add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight, const Sector& sector) {
+  const double angle = std::acos(std::clamp(from.normalized().dot(to.normalized()), -1.0, 1.0));
+  const int steps = std::max(1, static_cast<int>(angle / kStep));
+  Eigen::Vector3d before = from.normalized();
+  for (int i = 1; i <= steps; ++i) {
+    const Eigen::Vector3d after = (from + (to - from) * (static_cast<double>(i) / steps)).normalized();
+    const Eigen::Vector3d middle = (before + after).normalized();
+    const Eigen::Vector3d along = after - before;
+    before = after;
+    const double azimuth = std::atan2(middle.y(), middle.x());
+    const double elevation = std::asin(std::clamp(middle.z(), -1.0, 1.0));
+    if (std::abs(std::remainder(azimuth - sector.middle, 2.0 * kPi)) > sector.half_width ||
+        elevation < sector.min_elevation || elevation > sector.max_elevation)
+      continue;
+    const Eigen::Vector3d left(-std::sin(azimuth), std::cos(azimuth), 0.0);
+    const Eigen::Vector3d up = middle.cross(left);
+    const double course = std::atan2(along.dot(up), along.dot(left));
+    add_point(azimuth, elevation, course < 0.0 ? course + kPi : course, weight * along.norm());
+  }
+}
+
+// By a cell to either side, a quarter each: places of the map lie a step apart, and headings a cell.
+void Panorama::blur() {
+  for (int course = 0; course < kCourses; ++course) {
+    Row below{};  // the row below as it was
+    for (int elevation = 0; elevation < kElevations; ++elevation) {
+      float* const here = row(course, elevation);
+      Row was;
+      std::copy_n(here, kAzimuths, was.begin());
+      const float* const above = elevation + 1 < kElevations ? row(course, elevation + 1) : nullptr;
+      for (int a = 0; a < kAzimuths; ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        here[a] = 0.25F * below[i] + 0.5F * was[i] + 0.25F * (above != nullptr ? above[a] : 0.0F);
+      }
+      below = was;
+    }
+    for (int elevation = 0; elevation < kElevations; ++elevation) {
+      float* const here = row(course, elevation);
+      Row was;
+      std::copy_n(here, kAzimuths, was.begin());
+      for (int a = 0; a < kAzimuths; ++a) {
+        here[a] = 0.25F * was[static_cast<std::size_t>(wrapped(a - 1, kAzimuths))] +
+                  0.5F * was[static_cast<std::size_t>(a)] +
+                  0.25F * was[static_cast<std::size_t>(wrapped(a + 1, kAzimuths))];
+      }
+    }
+  }
+}
+
+void Panorama::finish() {
+  // Twenty books on a shelf do not count twenty times as much as its side.
+  for (float& cell : cells_) cell = std::sqrt(cell);
+  blur();
+  double squares = 0.0;
+  for (int course = 0; course < kCourses; ++course) {
+    for (int elevation = 0; elevation < kElevations; ++elevation) {
+      float* const here = row(course, elevation);
+      float mean = 0.0F;
+      for (int a = 0; a < kAzimuths; ++a) mean += here[a] / kAzimuths;
+      float most = 0.0F;
+      for (int a = 0; a < kAzimuths; ++a) {
+        here[a] -= mean;
+        squares += static_cast<double>(here[a]) * static_cast<double>(here[a]);
+        most = std::max(most, std::abs(here[a]));
+      }
+      empty_[static_cast<std::size_t>(course * kElevations + elevation)] = most == 0.0F;
+    }
+  }
+  if (squares <= 0.0) return;
+  const auto scale = static_cast<float>(1.0 / std::sqrt(squares));
+  for (float& cell : cells_) cell *= scale;
+}
+
+Panorama::Likeness Panorama::compare(const Panorama& other) const {
+  Likeness likeness{};
+  std::array<float, static_cast<std::size_t>(2 * kAzimuths)> twice;
+  for (int course = 0; course < kCourses; ++course) {
+    for (int elevation = 0; elevation < kElevations; ++elevation) {
+      const auto index = static_cast<std::size_t>(course * kElevations + elevation);
+      if (empty_[index] || other.empty_[index]) continue;
+      const float* const mine = row(course, elevation);
+      const float* const theirs = other.row(course, elevation);
+      std::copy_n(mine, kAzimuths, twice.begin());
+      std::copy_n(mine, kAzimuths, twice.begin() + kAzimuths);
+      for (int a = 0; a < kAzimuths; ++a) {
+        const float value = theirs[a];
+        const float* const from = twice.data() + a;
+        for (std::size_t turn = 0; turn < kAzimuths; ++turn) likeness[turn] += value * from[turn];
+      }
+    }
+  }
+  return likeness;
+}
+
+}  // namespace cgsr::global_localization

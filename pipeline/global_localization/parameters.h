@@ -1,0 +1,26 @@
+#pragma once
+
+namespace cgsr::global_localization {
+
+/// Images of a turn stand for so much to either side of where they look: twelve of them see all around.
+inline constexpr int kKeyframes = 12;
+
+struct GlobalLocalizerParameters {
+  double spacing_m = 0.4;    ///< of the grid of places that are compared.
+  double clearance_m = 0.2;  ///< of these places from obstacles, for who makes the grid.
+  double max_drift_m = 0.3;  ///< a robot that turns on the spot and is farther from where it began begins anew.
+  int max_candidates = 4;
+  double same_deg = 10.0;          ///< candidates that differ by no more, and are neighbours on the grid, are one.
+  double place_sigma_m = 0.08;     ///< of a candidate's place along x and y, from which the localizer tries it.
+  double heading_sigma_deg = 2.5;  ///< of its heading.
+  double slip_turn = 0.01;         ///< of the odometry's turns between these images, once the whole turn is known.
+  double min_likeness_share =
+      0.85;                       ///< of the best candidate's: others are tried too, although the best one was right.
+  int min_corrected = 4;          ///< images of the turn in which the localizer must correct a candidate's pose.
+  double max_rival_share = 0.5;   ///< of these, in how many another place may be corrected as well.
+  double same_m = 0.3;            ///< tried candidates that come this near to each other are one place.
+  int max_failed = 6;             ///< a candidate is given up when none of so many images corrected it.
+  int max_settling_images = 250;  ///< after which no image confirmed the pose: most of a turn.
+};
+
+}  // namespace cgsr::global_localization

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "pipeline/geometry/camera.h"
+#include "pipeline/geometry/pose.h"
+#include "pipeline/global_localization/panorama.h"
+#include "pipeline/global_localization/parameters.h"
+#include "pipeline/localization/expected.h"
+#include "pipeline/render/depth_raster.h"
+#include "pipeline/world/map.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::global_localization {
+
+/// Which elevations a camera sees within `half_width` of the azimuth that it looks to, in the sector about azimuth 0.
+/// \param camera  without lens.
+Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, double half_width);
+
+/// What the map's edges look like from places all over a home, as panoramas.
+///
+/// Cost: three looks at the map for each place (localization/work.h). Memory: 38 kB a place.
+class PlaceIndex {
+ public:
+  /// \param map  outlives it.  \param camera  without lens, in the size of the images worked on.  \param X_RC  the mount.
+  /// \param places_m  of the robot on the floor, in W.
+  PlaceIndex(const world::Map& map, const geometry::Camera& camera, const geometry::Pose& X_RC,
+             std::vector<Eigen::Vector2d> places_m);
+
+  /// Goes on. \param budget  asked before each look at the map. \return whether every place is in the index.
+  bool build(WorkBudget& budget);
+
+  [[nodiscard]] std::size_t size() const { return places_m_.size(); }
+  [[nodiscard]] const Eigen::Vector2d& place_m(std::size_t index) const { return places_m_[index]; }
+  [[nodiscard]] const Panorama& panorama(std::size_t index) const { return panoramas_[index]; }
+
+ private:
+  void look(std::size_t place, int side);
+
+  geometry::Pose X_RC_;
+  geometry::Camera wide_;  ///< sees a third of the panorama.
+  Sector sector_;
+  std::unique_ptr<render::DepthRaster> raster_;
+  localization::ExpectedView view_;
+  std::vector<render::VisiblePiece> visible_;
+  std::vector<Eigen::Vector2d> places_m_;
+  std::vector<Panorama> panoramas_;
+  std::size_t next_ = 0;
+  int next_side_ = 0;
+};
+
+}  // namespace cgsr::global_localization

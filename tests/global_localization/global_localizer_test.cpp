@@ -1,0 +1,196 @@
+#include "pipeline/global_localization/global_localizer.h"
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "pipeline/runtime/stage_budget.h"
+#include "tests/localization/small_room.h"
+#include "tests/support/allocation_guard.h"
+
+namespace cgsr::global_localization {
+namespace {
+
+using geometry::Pose;
+using localization::testing::in_small_room;
+using localization::testing::MapBuilder;
+using localization::testing::Picture;
+using localization::testing::small_room;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kTurn = 10.0 * kDegree;  // between images
+
+/// Half a turn shows it again: nobody can say where in it he is.
+world::Map room_that_is_twice_the_same() {
+  MapBuilder b;
+  const std::uint32_t wall = b.grey(0.7F);
+  const std::uint32_t dark = b.grey(0.15F);
+  const std::uint32_t floor = b.rectangle({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, b.grey(0.35F));
+  const std::uint32_t east = b.rectangle({4, 0, 0}, {0, 0, 2.5F}, {0, 4, 0}, wall);
+  const std::uint32_t west = b.rectangle({0, 0, 0}, {0, 4, 0}, {0, 0, 2.5F}, wall);
+  b.rectangle({0, 4, 0}, {4, 0, 0}, {0, 0, 2.5F}, wall);
+  b.rectangle({0, 0, 0}, {0, 0, 2.5F}, {4, 0, 0}, wall);
+  b.rectangle({3.998F, 1.1F, 0.5F}, {0, 0, 0.7F}, {0, 0.5F, 0}, dark, east);
+  b.rectangle({3.998F, 2.4F, 0.0F}, {0, 0, 1.9F}, {0, 0.8F, 0}, dark, east);
+  b.rectangle({0.002F, 2.4F, 0.5F}, {0, 0.5F, 0}, {0, 0, 0.7F}, dark, west);
+  b.rectangle({0.002F, 0.8F, 0.0F}, {0, 0.8F, 0}, {0, 0, 1.9F}, dark, west);
+  b.box({3.1F, 3.2F, 0}, {0.5F, 0.45F, 0.4F}, dark, floor);
+  b.box({0.4F, 0.35F, 0}, {0.5F, 0.45F, 0.4F}, dark, floor);
+  return b.map;
+}
+
+class PutDownAnywhere : public ::testing::Test {
+ protected:
+  explicit PutDownAnywhere(world::Map map = small_room())
+      : map_(std::move(map)),
+        camera_(geometry::Camera{}.scaled_to(320, 240)),
+        X_RC_(in_small_room(0.0, 0.0, 0.0)),
+        localizer_(map_, camera_, {}) {
+    const auto may_stand = [](double x_m, double y_m) { return x_m > 0.4 && x_m < 3.0 && y_m > 0.4 && y_m < 3.6; };
+    auto places = grid_of_places(map_, GlobalLocalizerParameters{}.spacing_m, may_stand);
+    searcher_ = std::make_unique<GlobalLocalizer>(map_, camera_, X_RC_, std::move(places), localizer_,
+                                                  localization::PoseTrackerParameters{}, GlobalLocalizerParameters{});
+  }
+
+  /// An image from where the robot is, and what its odometry, which began elsewhere, says of that.
+  Phase see(const Pose& X_WR, WorkBudget& budget) {
+    const Pose X_R0R = X_W0_.inverse() * X_WR;
+    // The odometry began elsewhere, and turns too far.
+    turned_ += std::remainder(geometry::heading_of(X_R0R) - std::remainder(turned_, 2.0 * std::numbers::pi),
+                              2.0 * std::numbers::pi);
+    const Motion motion{
+        .X_OR = geometry::pose_on_floor(5.0, 7.0, 2.0) *
+                geometry::pose_on_floor(X_R0R.translation().x(), X_R0R.translation().y(), odometry_turns_ * turned_)};
+    ++images_;
+    if (searcher_->looks_at(motion)) picture_.emplace(map_, X_WR * X_RC_, camera_, 1.5, images_);
+    return searcher_->update(picture_->view(), motion, budget);
+  }
+
+  /// Turns where it stands as long as that is wanted, and stands then. \return the phase in which it ended.
+  Phase turn(const Pose& X_W0, WorkBudget& budget) {
+    X_W0_ = X_W0;
+    double turned = 0.0;
+    while (searcher_->phase() < Phase::kFound && images_ < 2000) {
+      X_WR_ = X_W0 * geometry::pose_on_floor(0.0, 0.0, turned);
+      see(X_WR_, budget);
+      if (searcher_->wants_turn()) turned += kTurn;
+    }
+    return searcher_->phase();
+  }
+
+  world::Map map_;
+  geometry::Camera camera_;
+  Pose X_RC_;
+  localization::Localizer localizer_;
+  std::unique_ptr<GlobalLocalizer> searcher_;
+  UnlimitedBudget whole_;
+  Pose X_W0_ = Pose::Identity();
+  Pose X_WR_ = Pose::Identity();  ///< where it is at last.
+  double turned_ = 0.0;
+  double odometry_turns_ = 1.0;  ///< of what the robot turns.
+  std::uint32_t images_ = 0;
+  std::optional<Picture> picture_;  ///< the last that was looked at.
+};
+
+TEST_F(PutDownAnywhere, FindsItselfByTurningOnce) {
+  for (const auto& [x_m, y_m, heading] : {std::tuple{0.9, 1.7, 0.3}, {2.2, 2.1, -2.0}, {1.5, 0.8, 3.0}}) {
+    searcher_->restart();
+    images_ = 0;
+    turned_ = 0.0;
+    ASSERT_EQ(turn(geometry::pose_on_floor(x_m, y_m, heading), whole_), Phase::kFound) << x_m << ", " << y_m;
+    const geometry::Vector6d off = geometry::step_between(X_WR_ * X_RC_, searcher_->found().X_WC);
+    EXPECT_LT(off.head<3>().norm(), 0.03);
+    EXPECT_LT(off.tail<3>().norm(), 1.0 * kDegree);
+    EXPECT_LE(images_, 36U + 200U);
+  }
+}
+
+// Wheels whose track is told wrong: the images say when the turn is whole.
+TEST_F(PutDownAnywhere, BelievesTheImagesHowFarItTurned) {
+  for (const double share : {0.95, 1.05}) {
+    searcher_->restart();
+    images_ = 0;
+    turned_ = 0.0;
+    odometry_turns_ = share;
+    ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound) << share;
+    const geometry::Vector6d off = geometry::step_between(X_WR_ * X_RC_, searcher_->found().X_WC);
+    EXPECT_LT(off.head<3>().norm(), 0.03) << share;
+  }
+}
+
+// A robot does as much in each image as its stage's budget holds, and comes to the same answer.
+TEST_F(PutDownAnywhere, KeepsToItsUnits) {
+  X_W0_ = geometry::pose_on_floor(2.2, 2.1, -2.0);
+  double turned = 0.0;
+  while (searcher_->phase() < Phase::kFound && images_ < 4000) {
+    auto budget = runtime::StageBudget::of_units(18);
+    X_WR_ = X_W0_ * geometry::pose_on_floor(0.0, 0.0, turned);
+    see(X_WR_, budget);
+    ASSERT_LE(budget.granted(), 18U);
+    if (searcher_->wants_turn()) turned += kTurn;
+  }
+  ASSERT_EQ(searcher_->phase(), Phase::kFound);
+  EXPECT_LT((X_WR_.translation() - (searcher_->found().X_WC * X_RC_.inverse()).translation()).norm(), 0.03);
+}
+
+TEST_F(PutDownAnywhere, LooksAtThirteenImagesOfTheTurn) {
+  X_W0_ = geometry::pose_on_floor(0.9, 1.7, 0.3);
+  int looked = 0;
+  for (double turned = 0.0; searcher_->wants_turn(); turned += kTurn) {
+    const Pose X_WR = X_W0_ * geometry::pose_on_floor(0.0, 0.0, turned);
+    looked += searcher_->looks_at({.X_OR = geometry::pose_on_floor(5.0, 7.0, 2.0) * X_W0_.inverse() * X_WR}) ? 1 : 0;
+    see(X_WR, whole_);
+  }
+  EXPECT_EQ(looked, kKeyframes + 1);
+  EXPECT_FALSE(searcher_->looks_at({}));
+}
+
+// Pushed aside while it turns: what it saw before was seen from elsewhere.
+TEST_F(PutDownAnywhere, BeginsAnewWhereItWasMoved) {
+  X_W0_ = geometry::pose_on_floor(0.9, 1.7, 0.3);
+  for (int i = 0; i < 18; ++i) see(X_W0_ * geometry::pose_on_floor(0.0, 0.0, i * kTurn), whole_);
+  const Pose X_W1 = X_W0_ * geometry::pose_on_floor(0.8, 0.2, 18 * kTurn);
+  for (int i = 0; i < 43; ++i) {
+    see(X_W1 * geometry::pose_on_floor(0.0, 0.0, i * kTurn), whole_);
+  }
+  EXPECT_FALSE(searcher_->wants_turn());
+}
+
+// All black: nothing to see anywhere.
+TEST_F(PutDownAnywhere, SaysThatItFindsNothing) {
+  const std::vector<std::uint8_t> black(320 * 240, 2);
+  const ImageView image{
+      .data = black.data(), .width_px = 320, .height_px = 240, .stride_bytes = 320, .format = PixelFormat::kGrey8};
+  for (int i = 0; searcher_->phase() < Phase::kFound && i < 2000; ++i)
+    searcher_->update(image, {.X_OR = geometry::pose_on_floor(0.0, 0.0, i * kTurn)}, whole_);
+  EXPECT_EQ(searcher_->phase(), Phase::kNotFound);
+}
+
+TEST_F(PutDownAnywhere, AllocatesNothing) {
+  if (!test::AllocationGuard::counts()) GTEST_SKIP() << "not under a sanitizer";
+  const Picture picture(map_, in_small_room(0.9, 1.7, 0.3), camera_, 1.5, 1);
+  const test::AllocationGuard guard;
+  for (int i = 0; i < 60; ++i)
+    searcher_->update(picture.view(), {.X_OR = geometry::pose_on_floor(0.0, 0.0, i * kTurn)}, whole_);
+  EXPECT_EQ(guard.allocations(), 0U);
+}
+
+class PutDownInATwin : public PutDownAnywhere {
+ protected:
+  PutDownInATwin() : PutDownAnywhere(room_that_is_twice_the_same()) {}
+};
+
+TEST_F(PutDownInATwin, SaysThatThereAreTwoPlaces) {
+  EXPECT_EQ(turn(geometry::pose_on_floor(1.5, 1.4, 0.3), whole_), Phase::kAmbiguous);
+  int corrected = 0;
+  for (const Candidate& candidate : searcher_->candidates()) corrected += candidate.corrected > 3 ? 1 : 0;
+  EXPECT_EQ(corrected, 2);
+}
+
+}  // namespace
+}  // namespace cgsr::global_localization
