@@ -33,17 +33,20 @@ int run_localize(const LocalizeOptions& options) {
   for (const std::string& note : run->notes()) fmt::print(stderr, "note: {}\n", note);
   const std::string hash = config::hash(run->config());
   if (!options.json.empty()) {
-    const nlohmann::ordered_json json{{"images", run->images()},
-                                      {"corrected", run->corrected()},
-                                      {"edges", run->map().edges.size()},
-                                      {"max_units", run->max_units()},
-                                      {"config_sha256", hash}};
+    nlohmann::ordered_json json{{"images", run->images()},
+                                {"corrected", run->corrected()},
+                                {"edges", run->map().edges.size()},
+                                {"max_units", run->max_units()},
+                                {"config_sha256", hash}};
+    if (options.anywhere)
+      json["found_in"] = run->found_in() ? nlohmann::ordered_json(*run->found_in()) : nlohmann::ordered_json(nullptr);
     if (auto written = write_file(options.json, json.dump(1) + "\n"); !written) return report(written.error());
   }
   fmt::print("{} images{}, pose corrected in {}\n", run->images(), ended ? "" : " until it was stopped",
              run->corrected());
   if (!options.csv.empty()) fmt::print("poses    {}\n", options.csv);
   if (!options.video.empty()) fmt::print("video    {}\n", options.video);
+  if (!options.plan.empty()) fmt::print("plan     {}\n", options.plan);
   fmt::print("configuration {}\n", hash);
   return ended ? kSuccess : kInterrupted;
 }
@@ -60,15 +63,24 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   auto* pose = command->add_option("--pose", options->pose, "CSV with the pose of image 0: follow from there");
   auto* priors = command->add_option("--priors", options->priors, "CSV with a pose for each image: correct each one");
   pose->excludes(priors);
+  auto* anywhere =
+      command
+          ->add_flag("--anywhere", options->anywhere,
+                     "no pose is known: the robot turns on the spot once and stands then; the search over the whole "
+                     "map goes on until it is found, and it is followed from there")
+          ->excludes(pose)
+          ->excludes(priors);
   auto* odometry = command
                        ->add_option("--odometry", options->odometry,
                                     "CSV with the robot's pose in its odometry's frame, a row for each image")
                        ->excludes(priors);
-  command
-      ->add_option("--mount", options->mount,
-                   "the camera's pose on the robot: CSV, or the TOML that cgsr calibrate mount writes; without it the "
-                   "odometry is the camera's own")
-      ->excludes(priors);
+  auto* mount =
+      command
+          ->add_option(
+              "--mount", options->mount,
+              "the camera's pose on the robot: CSV, or the TOML that cgsr calibrate mount writes; without it the "
+              "odometry is the camera's own")
+          ->excludes(priors);
   command
       ->add_option("--sigma-m", options->sigma_m,
                    "standard deviation of the given poses along every axis, instead of the configuration's")
@@ -91,11 +103,16 @@ void add_localize_command(CLI::App& app, int& exit_code) {
       ->needs(odometry);
   command->add_option("--csv", options->csv, "write a row for each image");
   command->add_option("--video", options->video, "write a video with the map's edges over the images");
+  anywhere->needs(odometry)->needs(mount);
+  command
+      ->add_option("--plan", options->plan,
+                   "with --anywhere: draw where the robot may be into a picture of the map from above")
+      ->needs(anywhere);
   command->add_option("--json", options->json, "write the summary for machines");
   add_force_option(*command, options->force);
   command->callback([command, options, &exit_code] {
-    if (options->pose.empty() == options->priors.empty()) {
-      throw CLI::ValidationError(command->get_name(), "give either --pose or --priors");
+    if (!options->anywhere && options->pose.empty() == options->priors.empty()) {
+      throw CLI::ValidationError(command->get_name(), "give either --pose, --priors or --anywhere");
     }
     exit_code = run_localize(*options);
   });

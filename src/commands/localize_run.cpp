@@ -16,12 +16,15 @@
 #include "src/config/load.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
+#include "src/output/candidate_plan.h"
+#include "src/output/picture.h"
 #include "src/plug_in/expectation.h"
 
 namespace cgsr::app {
 namespace {
 
-constexpr int kMostLooks = 200;  // at one image, while a search is under way
+constexpr const char* kNoPose = ",,,,,,";  // in the columns of one
+constexpr int kMostLooks = 200;            // at one image, while a search is under way
 
 Result<config::Localization> configuration_of(const LocalizeOptions& options) {
   auto config = config::load_localization(options.config);
@@ -52,6 +55,7 @@ Result<void> claim_outputs(const LocalizeOptions& options) {
   files.writes(options.csv, "--csv", csv_file(csv_columns()));
   files.writes(options.video, "--video", video_file());
   files.writes(options.json, "--json", json_object());
+  files.writes(options.plan, "--plan", picture_file());
   return files.claim();
 }
 
@@ -88,7 +92,14 @@ Result<LocalizeRun> LocalizeRun::open(const LocalizeOptions& options) {
   state.map = std::make_shared<const world::Map>(std::move(*map));
   if (state.map->edges.empty()) return fail(fmt::format("{}: holds no edge to look for", options.map));
   if (auto opened = run.open_poses(options); !opened) return tl::unexpected(opened.error());
-  if (auto opened = run.open_stage(); !opened) return tl::unexpected(opened.error());
+  if (options.anywhere) {
+    auto search = FirstPose::make(*state.map, options.map, state.camera, run.X_RC_, state.config);
+    if (!search) return tl::unexpected(search.error());
+    state.first_pose = std::move(*search);
+    run.plan_file_ = options.plan;
+  } else if (auto opened = run.open_stage(); !opened) {
+    return tl::unexpected(opened.error());
+  }
   loading.reset();
   if (auto opened = run.open_outputs(options); !opened) return tl::unexpected(opened.error());
   return run;
@@ -116,8 +127,18 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     priors_file_ = options.priors;
     return {};
   }
-  const auto start = read_pose(options.pose);
-  if (!start) return tl::unexpected(start.error());
+  if (options.anywhere && !state_->config.tracker.floor) {
+    return fail(
+        fmt::format("{}: tracker.floor = false: --anywhere finds the pose of a robot on a floor, as with "
+                    "config/localization/floor.toml",
+                    options.config.empty() ? "without --config" : options.config));
+  }
+  std::optional<geometry::Pose> start;
+  if (!options.anywhere) {
+    const auto given = read_pose(options.pose);
+    if (!given) return tl::unexpected(given.error());
+    start = *given;
+  }
   geometry::Pose X_RC = geometry::Pose::Identity();
   if (!options.mount.empty()) {
     const auto mount = std::filesystem::path(options.mount).extension() == ".toml" ? read_mount(options.mount)
@@ -137,7 +158,7 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
   }
   X_RC_ = X_RC;
-  start_ = localization::prior_at(*start, start_sigmas(state_->config.prior, options));
+  if (start) start_ = localization::prior_at(*start, start_sigmas(state_->config.prior, options));
   return {};
 }
 
@@ -206,15 +227,18 @@ localization::Correction LocalizeRun::follow(const ImageView& image, std::uint32
 
 Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
   if (!priors_.empty()) return look_at_prior(image);
-  stages::LocalizeStage& stage = *state_->stage;
   geometry::Pose X_R0R1 = geometry::Pose::Identity();
   if (!odometry_.empty()) {
     const auto row = row_for(odometry_, odometry_file_);
     if (!row) return tl::unexpected(row.error());
     if (X_OR_before_) X_R0R1 = X_OR_before_->inverse() * (*row)->X;
     X_OR_before_ = (*row)->X;
+  }
+  if (!state_->stage) return search(image, *X_OR_before_);
+  stages::LocalizeStage& stage = *state_->stage;
+  if (!odometry_.empty()) {
     // About the floor instead of an axle of unknown height: a millimetre of the camera's height.
-    stage.lean(geometry::pitch_of((*row)->X), 0.0);
+    stage.lean(geometry::pitch_of(*X_OR_before_), 0.0);
   }
   // No robot waits for the first one: it is looked at until it says where the camera is.
   if (images_ == 0) return follow(image, runtime::StageBudget::kAll);
@@ -227,6 +251,26 @@ Result<localization::Correction> LocalizeRun::look(const ImageView& image) {
     X_RR_last_ = answer.corrected && corrected_before ? X_RC_ * (X_WC_before.inverse() * answer.X_WC) * X_RC_.inverse()
                                                       : geometry::Pose::Identity();
   return answer;
+}
+
+Result<localization::Correction> LocalizeRun::search(const ImageView& image, const geometry::Pose& X_OR) {
+  FirstPose& first = *state_->first_pose;
+  auto budget = runtime::StageBudget::of_units(units_);
+  count_stage_begin();
+  bool found = false;
+  for (int look = 0; look < kMostLooks && !found && !budget.refused(); ++look) {
+    found = first.see(image, X_OR, budget);
+    if (first.phase() != global_localization::Phase::kTrying) break;  // from image to image
+  }
+  count_stage_end("find");
+  count_image_end();
+  units_most_ = std::max(units_most_, budget.granted());
+  if (!found) return localization::Correction{.reason = localization::Reason::kSearching};
+  found_in_ = frame_;
+  tracked_ = first.found();
+  start_ = {.X_WC = tracked_.X_WC, .covariance = tracked_.covariance};
+  if (auto opened = open_stage(); !opened) return tl::unexpected(opened.error());
+  return tracked_.correction;
 }
 
 Result<localization::Correction> LocalizeRun::look_at_prior(const ImageView& image) {
@@ -248,13 +292,18 @@ Result<localization::Correction> LocalizeRun::look_at_prior(const ImageView& ima
 }
 
 Result<void> LocalizeRun::write(const ImageView& image, const localization::Correction& answer) {
+  const bool known = state_->stage.has_value();
   if (csv_) {
     auto written =
         csv_->add_line(fmt::format("{},{},{},{},{},{:.3f}", frame_, answer.corrected ? 1 : 0, to_string(answer.reason),
-                                   pose_as_csv(answer.X_WC), answer.matches, answer.rms_px));
+                                   known ? pose_as_csv(answer.X_WC) : kNoPose, answer.matches, answer.rms_px));
     if (!written) return written;
   }
   if (!video_) return {};
+  if (!known) {
+    const std::string words = fmt::format("image {}   where am I: {}", frame_, to_string(state_->first_pose->phase()));
+    return video_->add(state_->overlay->draw(image, std::nullopt, false, words));
+  }
   const Eigen::Vector3d& p = answer.X_WC.translation();
   const std::string words = answer.corrected
                                 ? fmt::format("image {}   at {:.3f} {:.3f} {:.3f} m   {} matches   rms {:.2f} px",
@@ -284,7 +333,21 @@ Result<bool> LocalizeRun::step() {
 }
 
 Result<void> LocalizeRun::finish() {
+  if (state_->first_pose) {
+    const FirstPose& first = *state_->first_pose;
+    notes_.push_back(
+        first.outcome().empty()
+            ? fmt::format("first pose: not found: the images end while {}; one turn on the spot is needed, and then {}",
+                          to_string(first.phase()), "images without motion until it is found")
+            : first.outcome());
+    if (auto drawn = draw_plan(); !drawn) return drawn;
+  }
   return video_ ? video_->close() : Result<void>{};
+}
+
+Result<void> LocalizeRun::draw_plan() const {
+  if (plan_file_.empty()) return {};
+  return write_picture(plan_file_, draw_candidates(*state_->map, state_->first_pose->candidates()));
 }
 
 }  // namespace cgsr::app

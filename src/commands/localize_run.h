@@ -13,6 +13,7 @@
 #include "pipeline/world/load.h"
 #include "pipeline/world/map.h"
 #include "platform/error.h"
+#include "src/commands/first_pose.h"
 #include "src/config/localization.h"
 #include "src/input/image_input.h"
 #include "src/input/pose_file.h"
@@ -39,12 +40,14 @@ struct LocalizeOptions {
   std::string csv;
   std::string video;
   std::string json;
+  std::string plan;
+  bool anywhere = false;  ///< no pose is given: the images show a turn on the spot, and a search finds the first one.
   bool force = false;
   int units = 60;  ///< of work at each image after the first that is followed on odometry; 0: all that it asks for.
 };
 
-/// Corrects the poses of a camera's images, one after the other: either follows from one pose, carried by odometry where there is some, or
-/// takes a prior for each image by itself.
+/// Corrects the poses of a camera's images, one after the other: either follows from one pose, given or found, carried by odometry where there is
+/// some, or takes a prior for each image by itself.
 class LocalizeRun {
  public:
   /// Opens everything before the first image is looked at, so that what cannot be read or written is said at once.
@@ -53,7 +56,7 @@ class LocalizeRun {
   /// Looks at the next image. \return false at the end; an error is a file that could not be written, or an image that has no prior.
   Result<bool> step();
 
-  /// What the video still holds is written.
+  /// What the video still holds is written, and the plan of where the robot may have been.
   Result<void> finish();
 
   [[nodiscard]] const config::Localization& config() const { return state_->config; }
@@ -61,6 +64,8 @@ class LocalizeRun {
   [[nodiscard]] int corrected() const { return corrected_; }
   /// Units of work that the image which took most of them was granted, the first one of a followed camera aside.
   [[nodiscard]] std::uint32_t max_units() const { return units_most_; }
+  /// The image in which --anywhere found the pose.
+  [[nodiscard]] std::optional<std::int64_t> found_in() const { return found_in_; }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] const world::Map& map() const { return *state_->map; }
 
@@ -70,6 +75,7 @@ class LocalizeRun {
     config::Localization config;
     std::shared_ptr<const world::Map> map;
     geometry::Camera camera;
+    std::unique_ptr<FirstPose> first_pose;  ///< with --anywhere.
     std::optional<stages::LocalizeStage> stage;
     std::unique_ptr<render::DepthRaster> expectation;  ///< of the video.
     std::optional<MapOverlay> overlay;
@@ -82,6 +88,8 @@ class LocalizeRun {
   [[nodiscard]] Result<void> open_poses(const LocalizeOptions& options);
   [[nodiscard]] Result<void> open_outputs(const LocalizeOptions& options);
   [[nodiscard]] Result<localization::Correction> look(const ImageView& image);
+  [[nodiscard]] Result<localization::Correction> search(const ImageView& image, const geometry::Pose& X_OR);
+  [[nodiscard]] Result<void> draw_plan() const;
   [[nodiscard]] Result<localization::Correction> look_at_prior(const ImageView& image);
   [[nodiscard]] localization::Correction follow(const ImageView& image, std::uint32_t units);
   [[nodiscard]] Result<void> write(const ImageView& image, const localization::Correction& answer);
@@ -93,6 +101,8 @@ class LocalizeRun {
   std::string priors_file_;
   std::vector<PoseRow> odometry_;
   std::string odometry_file_;
+  std::string plan_file_;
+  std::optional<std::int64_t> found_in_;
   std::optional<geometry::Pose> X_OR_before_;
   geometry::Pose X_RC_ = geometry::Pose::Identity();
   localization::Prior start_;

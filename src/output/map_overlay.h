@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,10 @@ class MapOverlay {
 
   [[nodiscard]] cv::Size picture_size() const;
 
-  /// \param sure  false: the pose is a prediction, the words are red.
+  /// \param X_WC  nothing: it is not known, and no edges are drawn.  \param sure  false: the pose is a prediction, the words are red.
   /// \return the picture, B G R; valid until the next call.
-  const cv::Mat& draw(const ImageView& image, const geometry::Pose& X_WC, bool sure, const std::string& words);
+  const cv::Mat& draw(const ImageView& image, const std::optional<geometry::Pose>& X_WC, bool sure,
+                      const std::string& words);
 
  private:
   const world::Map& map_;

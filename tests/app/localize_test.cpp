@@ -1,9 +1,11 @@
 // cgsr localize on rendered images and on those that others made.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -100,6 +102,73 @@ class LocalizeFilm : public ::testing::Test {
   static constexpr const char* kFloor = CGSR_SOURCE_DIR "/config/localization/floor.toml";
   static inline std::unique_ptr<ScratchFolder> shared_;
 };
+
+/// The robot turns on the spot once and a little more, an image every 30 degrees, and stands then. Its odometry turns 2 % too far.
+class TurningFilm : public LocalizeFilm {
+ protected:
+  static constexpr int kTurned = 15;
+  static constexpr int kAll = 30;
+  static constexpr double kFirst_rad = -std::numbers::pi / 3.0;
+
+  static geometry::Pose X_WR(int image) {
+    return geometry::pose_on_floor(2.0, 0.3, kFirst_rad + std::min(image, kTurned - 1) * std::numbers::pi / 6.0);
+  }
+
+  static void SetUpTestSuite() {
+    LocalizeFilm::SetUpTestSuite();
+    std::filesystem::create_directories(file("turn"));
+    geometry::Pose X_RC = true_pose(0);
+    X_RC.translation() = Eigen::Vector3d(0.0, 0.0, 1.2);
+    std::string odometry = kColumns;
+    for (int i = 0; i < kAll; ++i) {
+      const std::string name = file(fmt::format("turn/{:02}.png", i));
+      if (i < kTurned) {
+        const auto drawn = run_cgsr({"sim", "render", "--world", kWorld, "--pose", pose_as_csv(X_WR(i) * X_RC),
+                                     "--seed", fmt::format("{}", i + 1), "--edge-samples", "1", "--output", name});
+        ASSERT_EQ(drawn.exit_code, 0) << drawn.errors;
+      } else {
+        std::filesystem::copy_file(file(fmt::format("turn/{:02}.png", kTurned - 1)), name);
+      }
+      const double turned = std::min(i, kTurned - 1) * std::numbers::pi / 6.0;
+      odometry += fmt::format("{},{}\n", i, pose_as_csv(geometry::pose_on_floor(7.0, 1.0, 0.4 + 1.02 * turned)));
+    }
+    write_text(file("turn.csv"), odometry);
+  }
+
+  static Outcome localize_turn(std::vector<std::string> more) {
+    more.insert(more.begin(), {"--anywhere", "--odometry", file("turn.csv"), "--config", kFloor, "--units", "0"});
+    return localize(more, file("room/map.obj"), file("room/calibrated/camera.yaml"), file("turn"));
+  }
+};
+
+TEST_F(TurningFilm, FindsTheFirstPoseAndFollowsFromThere) {
+  const auto run = localize_turn({"--mount", file("mount.csv"), "--csv", file("found.csv"), "--json",
+                                  file("found.json"), "--plan", file("plan.png"), "--video", file("found.avi")});
+  ASSERT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("first pose: found"));
+  EXPECT_TRUE(std::filesystem::exists(file("plan.png")));
+  const auto json = nlohmann::json::parse(read_text(file("found.json")));
+  ASSERT_TRUE(json.at("found_in").is_number()) << run.errors;
+  EXPECT_GE(json.at("found_in"), 12);
+  EXPECT_EQ(json.at("corrected"), kAll - json.at("found_in").get<int>());
+  std::istringstream lines(read_text(file("found.csv")));
+  std::string last;
+  for (std::string line; std::getline(lines, line);) last = line;
+  EXPECT_THAT(last, ::testing::StartsWith("29,1,,2.0"));
+  EXPECT_THAT(read_text(file("found.csv")), HasSubstr("\n0,0,searching,,,,,,,,0,0.000\n"));
+}
+
+TEST_F(TurningFilm, NeedsAFloorAMountAndOdometry) {
+  const auto no_mount = localize_turn({});
+  EXPECT_NE(no_mount.exit_code, 0);
+  EXPECT_THAT(no_mount.errors, HasSubstr("--anywhere requires --mount"));
+  const auto no_floor = localize({"--anywhere", "--odometry", file("turn.csv"), "--mount", file("mount.csv")},
+                                 file("room/map.obj"), file("room/calibrated/camera.yaml"), file("turn"));
+  EXPECT_NE(no_floor.exit_code, 0);
+  EXPECT_THAT(no_floor.errors, HasSubstr("tracker.floor = false: --anywhere finds the pose of a robot on a floor"));
+  const auto both = localize_turn({"--mount", file("mount.csv"), "--pose", file("pose.csv")});
+  EXPECT_THAT(both.errors, HasSubstr("--pose excludes --anywhere"));
+}
 
 TEST_F(LocalizeFilm, CorrectsEachImageFromItsPrior) {
   const auto run = localize({"--priors", file("priors.csv"), "--csv", file("each.csv"), "--json", file("each.json")});
@@ -246,7 +315,7 @@ TEST_F(LocalizeFilm, WhatIsWrongIsNamed) {
   }
   const auto neither = localize({});
   EXPECT_EQ(neither.exit_code, 2);
-  EXPECT_THAT(neither.errors, HasSubstr("give either --pose or --priors"));
+  EXPECT_THAT(neither.errors, HasSubstr("give either --pose, --priors or --anywhere"));
   EXPECT_EQ(localize({"--pose", file("pose.csv"), "--priors", file("priors.csv")}).exit_code, 2);
 }
 
