@@ -94,6 +94,8 @@ constexpr std::array kRequirements{
     NamedRequirement{"homes-4.1", "ours", "false claims", at_most(0.005), kSettling},
     NamedRequirement{"homes-4.1", "ours, perfect copy", "position error", at_most(1.0)},
     NamedRequirement{"homes-4.1", "ours, perfect copy", "direction error", at_most(0.1)},
+    NamedRequirement{"start-anywhere", "ours", "right within 20 s", at_least(0.8)},
+    NamedRequirement{"start-anywhere", "ours", "wrong and claimed", at_most(0.01)},
     NamedRequirement{"table-4.1", "ours", "corrected", at_least(0.95), kGate},
     NamedRequirement{"table-4.1", "ours", "position error", at_most(2.5)},
     NamedRequirement{"table-4.1", "ours", "direction error", at_most(0.5)},
