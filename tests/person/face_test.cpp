@@ -1,5 +1,6 @@
 // Faces without faces: what describes and tells apart works on any texture, so these are drawn at random. Real ones: cgsr reproduce faces-caltech.
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <random>
@@ -182,10 +183,49 @@ TEST(GreyRegion, IsNearlyTheSameWhereItIsCutQuickly) {
 TEST(FaceDetector, LooksThroughAWholeImageInAFewSteps) {
   const auto detector = FaceDetector::from_cascade(cascade_text(), {});
   ASSERT_TRUE(detector) << detector.error().message;
-  const std::size_t steps = detector->steps(640, 480);
+  const std::size_t steps = detector->round_of(640, 480).size();
   EXPECT_LE(steps, 35U) << "two in an image are half a second";
   EXPECT_GE(steps, 10U) << "no step may take the time of an image";
-  EXPECT_EQ(detector->steps(20, 20), 0U) << "no face of 40 px is in it";
+  EXPECT_TRUE(detector->round_of(20, 20).empty()) << "no face of 40 px is in it";
+}
+
+bool is_within(const Box& face, const Box& region) {
+  return face.x >= region.x && face.y >= region.y && face.x + face.width <= region.x + region.width &&
+         face.y + face.height <= region.y + region.height;
+}
+
+TEST(FaceDetector, HasEveryFaceWhollyInAStepOfARound) {
+  const auto detector = FaceDetector::from_cascade(cascade_text(), {});
+  ASSERT_TRUE(detector) << detector.error().message;
+  const auto round = detector->round_of(640, 480);
+  std::mt19937 random(20261126);
+  for (const SearchStep& sought : round) {
+    const double side = std::min(sought.max_face_px, 480.0);
+    std::uniform_real_distribution<double> x(0.0, 640.0 - side), y(0.0, 480.0 - side);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Box face{x(random), y(random), side, side};
+      EXPECT_TRUE(std::ranges::any_of(round,
+                                      [&](const SearchStep& step) {
+                                        return step.min_face_px == sought.min_face_px && is_within(face, step.region);
+                                      }))
+          << face.x << ' ' << face.y << ' ' << side;
+    }
+  }
+}
+
+// What two steps share is searched twice: the largest face that may lie there, and a little more. The cost of a step is that of its region.
+TEST(FaceDetector, LooksAtNoPartOfTheImageTwiceButForAFaceOnTheEdge) {
+  const auto detector = FaceDetector::from_cascade(cascade_text(), {});
+  ASSERT_TRUE(detector) << detector.error().message;
+  const auto round = detector->round_of(640, 480);
+  for (const SearchStep& step : round) {
+    double right = 640.0;  // of the step: where the next one to the right begins
+    for (const SearchStep& other : round) {
+      const bool beside = other.min_face_px == step.min_face_px && other.region.y == step.region.y;
+      if (beside && other.region.x > step.region.x) right = std::min(right, other.region.x);
+    }
+    EXPECT_LE(step.region.x + step.region.width - right, 1.3 * step.max_face_px) << step.region.x << ' ' << right;
+  }
 }
 
 TEST(FaceDetector, SaysWhatIsWrongWithACascade) {

@@ -31,18 +31,17 @@ struct Cut {
   double face_px;
   double width_px, height_px;
 };
-constexpr Cut kRoughCut{kWindow_px, 110.0, 90.0};
+constexpr Cut kRoughCut{kWindow_px, 104.0, 90.0};
 constexpr Cut kCloseCut{kClose_px, 130.0, 100.0};
-
-struct Slice {
-  Box region;
-  double face_px;      // the smallest that it looks for
-  double max_face_px;  // the largest
-};
 
 int tiles_along(double length_px, double tile_px, double overlap_px) {
   if (length_px <= tile_px) return 1;
   return 1 + static_cast<int>(std::ceil((length_px - tile_px) / (tile_px - overlap_px)));
+}
+
+// As long as so many that overlap by no more than they have to: what they overlap by is looked at twice.
+double tile_length(double length_px, int tiles, double overlap_px) {
+  return (length_px + (tiles - 1) * overlap_px) / tiles;
 }
 
 // As many as cost no more than the fewest do in the largest slice: pixels shrink with the square of the size sought.
@@ -56,15 +55,15 @@ int sizes_in(double width_px, double height_px, const Cut& cut) {
 }
 
 // Large faces first: they are near, and cheap to look for.
-std::vector<Slice> slices_of(int width_px, int height_px, double min_face_px, const Cut& cut) {
+std::vector<SearchStep> slices_of(int width_px, int height_px, double min_face_px, const Cut& cut) {
   const double largest = std::min(width_px, height_px);
   const double overlap = cut.face_px * kScaleStep + 4.0;
-  std::vector<Slice> slices;
+  std::vector<SearchStep> slices;
   for (double face = min_face_px; face <= largest;) {
     const double scale = cut.face_px / face;
     const double w = width_px * scale, h = height_px * scale;
     const int across = tiles_along(w, cut.width_px, overlap), down = tiles_along(h, cut.height_px, overlap);
-    const double tile_w = std::min(w, cut.width_px), tile_h = std::min(h, cut.height_px);
+    const double tile_w = tile_length(w, across, overlap), tile_h = tile_length(h, down, overlap);
     const int sizes = across * down > 1 ? kMinSizes : sizes_in(w, h, cut);
     const double next_face = face * std::pow(kScaleStep, sizes);
     for (int i = across * down; i-- > 0;) {
@@ -98,17 +97,17 @@ bool is_among(const std::vector<Box>& faces, const Box& face) {
 }
 
 // Every round looks at positions that the one before it left out: four rounds look at all.
-Slice shifted(Slice slice, std::size_t round) {
-  const double position = slice.face_px / kRoughCut.face_px;
+SearchStep shifted(SearchStep slice, std::size_t round) {
+  const double position = slice.min_face_px / kRoughCut.face_px;
   slice.region.x += position * static_cast<double>(round % 2);
   slice.region.y += position * static_cast<double>(round / 2 % 2);
   return slice;
 }
 
 // Appends the rough places of faces in a slice, scaled so that the smallest are of face_px.
-void look_at(const ImageView& image, const Slice& slice, double face_px, int neighbors, cv::CascadeClassifier& cascade,
-             std::vector<Box>& rough) {
-  const double scale = face_px / slice.face_px;
+void look_at(const ImageView& image, const SearchStep& slice, double face_px, int neighbors,
+             cv::CascadeClassifier& cascade, std::vector<Box>& rough) {
+  const double scale = face_px / slice.min_face_px;
   const Box& region = slice.region;
   const int width = static_cast<int>(std::lround(region.width * scale));
   const int height = static_cast<int>(std::lround(region.height * scale));
@@ -187,7 +186,7 @@ std::vector<Box> FaceDetector::find_all(const ImageView& image) {
   std::vector<Box> faces;
   if (image.empty()) return faces;
   const int neighbors = std::min(1, parameters_.min_neighbors);
-  for (const Slice& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
+  for (const SearchStep& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
     std::vector<Box> noticed;
     look_at(image, slice, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
     for (const Box& rough : noticed) {
@@ -199,8 +198,8 @@ std::vector<Box> FaceDetector::find_all(const ImageView& image) {
   return faces;
 }
 
-std::size_t FaceDetector::steps(int width_px, int height_px) const {
-  return slices_of(width_px, height_px, parameters_.min_face_px, kRoughCut).size();
+std::vector<SearchStep> FaceDetector::round_of(int width_px, int height_px) const {
+  return slices_of(width_px, height_px, parameters_.min_face_px, kRoughCut);
 }
 
 }  // namespace cgsr::person

@@ -97,7 +97,7 @@ void FaceTracks::look(const ImageView& image, WorkBudget& budget, const std::opt
     if (!budget.grant()) return;
     expect(image, *expected);
   }
-  const std::size_t most = detector_.steps(image.width_px, image.height_px);
+  const std::size_t most = detector_.round_of(image.width_px, image.height_px).size();
   for (std::size_t i = 0; i < most && budget.grant(); ++i) search(image);
 }
 
