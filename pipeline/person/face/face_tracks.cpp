@@ -22,9 +22,14 @@ FaceTrack* FaceTracks::longest_waiting() {
   return longest;
 }
 
+// What a track that has lost its face finds where another one follows a face is that one's: the robot has turned from one person to the next.
 void FaceTracks::look_for(FaceTrack& track, const ImageView& image) {
   track.looks_waited_ = 0;
-  const auto face = detector_.find_near(image, track.box);
+  auto face = detector_.find_near(image, track.box);
+  const auto follows_it = [&](const FaceTrack& other) {
+    return &other != &track && other.missed == 0 && same_face(other.box, *face);
+  };
+  if (face && track.missed > 0 && std::ranges::any_of(tracks_, follows_it)) face.reset();
   track.seen = face.has_value();
   track.missed = face ? 0 : track.missed + 1;
   if (face) track.box = *face;
@@ -87,11 +92,14 @@ void FaceTracks::look(const ImageView& image, WorkBudget& budget, const std::opt
   for (FaceTrack& track : tracks_) ++track.looks_waited_;
   if (looks_without_search_ >= kMaxLooksWithoutSearch && budget.grant()) search(image);
   ++looks_without_search_;
+  bool looked_for_all = true;
   while (FaceTrack* const track = longest_waiting()) {
-    if (!budget.grant()) return;
+    looked_for_all = budget.grant();
+    if (!looked_for_all) break;
     look_for(*track, image);
   }
-  forget_lost();
+  forget_lost();  // also where there are more faces than the budget allows for: a lost one would be found where the next person comes into view
+  if (!looked_for_all) return;
   const auto is_there = [&](const FaceTrack& track) { return same_face(track.box, *expected); };
   if (expected && std::ranges::none_of(tracks_, is_there)) {
     if (!budget.grant()) return;

@@ -1,0 +1,91 @@
+// Faces followed from image to image. They are drawn: the cascade takes them for faces.
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/person/face/face_tracks.h"
+#include "tests/support/counted_budget.h"
+
+namespace cgsr::person {
+namespace {
+
+void draw_face(cv::Mat& grey, int x, int y, double size) {
+  const auto oval = [&](double dx, double dy, double w, double h, int value) {
+    cv::ellipse(grey, {x + static_cast<int>(dx * size), y + static_cast<int>(dy * size)},
+                {static_cast<int>(w * size), static_cast<int>(h * size)}, 0, 0, 360, value, cv::FILLED, cv::LINE_AA);
+  };
+  oval(0.0, -0.1, 0.46, 0.62, 40);  // hair
+  oval(0.0, 0.05, 0.38, 0.52, 190);
+  for (const double side : {-1.0, 1.0}) {
+    oval(side * 0.17, -0.1, 0.11, 0.06, 90);
+    oval(side * 0.17, -0.1, 0.05, 0.05, 30);
+    oval(side * 0.17, -0.2, 0.12, 0.025, 60);
+  }
+  oval(0.0, 0.12, 0.05, 0.14, 205);
+  oval(0.0, 0.2, 0.08, 0.03, 130);
+  oval(0.0, 0.35, 0.14, 0.04, 100);
+}
+
+cv::Mat people_at(const std::vector<int>& places) {
+  cv::Mat grey(480, 640, CV_8UC1, cv::Scalar(120));
+  for (const int x : places) draw_face(grey, x, 200, 100.0);
+  cv::GaussianBlur(grey, grey, {}, 2.0);
+  return grey;
+}
+
+ImageView view_of_grey(const cv::Mat& grey) {
+  return {grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8};
+}
+
+FaceTracks tracks() {
+  std::ifstream in("/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml");
+  std::stringstream text;
+  text << in.rdbuf();
+  return FaceTracks(std::move(FaceDetector::from_cascade(text.str(), {}).value()));
+}
+
+void look(FaceTracks& faces, const cv::Mat& grey, int images, int units) {
+  for (int i = 0; i < images; ++i) {
+    CountedBudget budget(units);
+    faces.look(view_of_grey(grey), budget);
+  }
+}
+
+std::ptrdiff_t followed_at(const FaceTracks& faces, int x) {
+  return std::ranges::count_if(
+      faces.tracks(), [&](const FaceTrack& track) { return track.box.x < x && x < track.box.x + track.box.width; });
+}
+
+TEST(FaceTracks, ForgetsALostFaceAlsoWhereThereAreMoreThanTheBudgetAllowsFor) {
+  constexpr int kUnits = 2;  // as on the robot
+  FaceTracks faces = tracks();
+  look(faces, people_at({100, 320, 540}), 60, kUnits);
+  ASSERT_EQ(faces.tracks().size(), 3U) << "the faces that are drawn are found";
+  look(faces, people_at({100, 320}), 15, kUnits);
+  EXPECT_EQ(followed_at(faces, 540), 0);
+  EXPECT_EQ(faces.tracks().size(), 2U);
+}
+
+// The robot turns from one person to the next: the next one's face comes where the other's was.
+TEST(FaceTracks, LeavesAFaceToTheTrackThatFollowedItThere) {
+  constexpr int kUnits = 10;
+  FaceTracks faces = tracks();
+  look(faces, people_at({320}), 40, kUnits);
+  ASSERT_EQ(faces.tracks().size(), 1U);
+  const std::uint32_t first = faces.tracks()[0].number;
+  look(faces, people_at({210, 320}), 40, kUnits);
+  ASSERT_EQ(faces.tracks().size(), 2U);
+  for (const int x : {238, 266, 294, 320}) look(faces, people_at({x}), 1, kUnits);
+  ASSERT_EQ(faces.tracks().size(), 1U);
+  EXPECT_NE(faces.tracks()[0].number, first);
+}
+
+}  // namespace
+}  // namespace cgsr::person
