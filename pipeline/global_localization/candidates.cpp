@@ -13,7 +13,7 @@ using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCell = 2.0 * std::numbers::pi / Panorama::kAzimuths;
-constexpr int kCompareUnits = 1;  // a place with the panorama seen
+constexpr int kCompareUnits = 2;  // a place with the panorama seen: 1.5 million instructions
 constexpr double kNeighbours =
     1.5;                        // steps of the grid: places no farther apart, seen from one heading, are one candidate
 constexpr double kAbout = 1.6;  // likewise: the neighbours along the axes and at the corners

@@ -42,7 +42,7 @@ class CandidateSearch {
 
   void restart();
 
-  /// Compares, as far as the budget goes: a unit for each place. \return whether the candidates are known.
+  /// Compares, as far as the budget goes: two units for each place. \return whether the candidates are known.
   bool go_on(const Panorama& seen, WorkBudget& budget);
 
   /// The most alike first.

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Geometry>
-
-#include "pipeline/localization/work.h"
-
 namespace cgsr::global_localization {
 namespace {
 
@@ -61,6 +56,7 @@ GlobalLocalizer::GlobalLocalizer(const world::Map& map, const geometry::Camera& 
 void GlobalLocalizer::restart() {
   phase_ = Phase::kTurning;
   turn_.restart();
+  closed_ = false;
   gathered_ = false;
   search_.restart();
   trial_ = 0;
@@ -72,15 +68,17 @@ void GlobalLocalizer::restart() {
 Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, WorkBudget& budget,
                               const std::uint8_t* mask) {
   if (phase_ == Phase::kTurning) {
+    const bool looked = turn_.looks_at(motion);
     if (turn_.see(image, motion, mask)) {
       phase_ = Phase::kComparing;
-    } else {
+    } else if (!looked) {
       index_.build(budget);
     }
   } else if (phase_ == Phase::kComparing) {
-    if (!gathered_) {
+    if (!std::exchange(closed_, true)) {
+      turn_.close();
+    } else if (!std::exchange(gathered_, true)) {
       turn_.gather(seen_);
-      gathered_ = true;
     } else if (index_.build(budget) && search_.go_on(seen_, budget)) {
       phase_ = search_.candidates().empty() ? Phase::kNotFound : Phase::kTrying;
     }

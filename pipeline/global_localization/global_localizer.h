@@ -89,6 +89,7 @@ class GlobalLocalizer {
   CandidateSearch search_;
   Phase phase_ = Phase::kTurning;
   Panorama seen_;
+  bool closed_ = false;            ///< the turn is.
   bool gathered_ = false;          ///< seen_ is.
   std::size_t trial_ = 0;          ///< candidate under trial.
   std::size_t next_keyframe_ = 0;  ///< that it sees.

@@ -14,10 +14,13 @@ namespace {
 constexpr int kSides = 3;
 constexpr double kSide = 2.0 * std::numbers::pi / kSides;
 constexpr double kFocalPerWidth = 0.277;  // of a camera that sees 122 degrees: a third of the way round, and a little
+constexpr int kSideUnits = 4;             // a look to one side: 2 to 4 million instructions
 constexpr std::size_t kMostPieces = 3000;
 
 render::RasterParameters raster_parameters() {
   render::RasterParameters raster;
+  raster.width = 160;  // cells of half a degree: six in one of the panorama
+  raster.height = 120;
   raster.min_piece_px = 3.0;
   raster.max_surfaces = 1000;
   raster.max_edges = 1200;
@@ -81,7 +84,7 @@ void PlaceIndex::look(std::size_t place, int side) {
 
 bool PlaceIndex::build(WorkBudget& budget) {
   while (next_ < places_m_.size()) {
-    if (!localization::granted(budget, localization::kLookUnits)) return false;
+    if (!localization::granted(budget, kSideUnits)) return false;
     look(next_, next_side_);
     if (++next_side_ < kSides) continue;
     panoramas_[next_].finish();

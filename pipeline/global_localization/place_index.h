@@ -23,7 +23,7 @@ Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, doubl
 
 /// What the map's edges look like from places all over a home, as panoramas.
 ///
-/// Cost: three looks at the map for each place (localization/work.h). Memory: 38 kB a place.
+/// Cost: 12 units for each place (localization/work.h). Memory: 38 kB a place.
 class PlaceIndex {
  public:
   /// \param map  outlives it.  \param camera  without lens, in the size of the images worked on.  \param X_RC  the mount.

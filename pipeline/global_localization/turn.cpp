@@ -18,7 +18,8 @@ constexpr double kKeyframeTurn = 2.0 * std::numbers::pi / kKeyframes;
 constexpr double kTurnTolerance = 0.5 * kDegree;  // of an image that comes just before it has turned so far
 constexpr std::size_t kClosing = 3;               // images of the beginning, of which one closes the turn
 constexpr double kMostClosing = 36.0 * kDegree;   // that the odometry of one turn may be off
-constexpr double kClosingStep = 2.0 * kDegree;
+constexpr double kClosingStep = 3.0 * kDegree;
+constexpr float kShort_px = 5.0F;  // half of an edge that says too little for its cost
 constexpr double kLeastDepth = 0.1;
 constexpr float kSurelyTheSame = 0.5F;  // agreement of two images
 
@@ -72,9 +73,7 @@ bool Turn::see(const ImageView& image, const Motion& motion, const std::uint8_t*
   X_OR_before_ = motion.X_OR;
   if (std::abs(turned_rad_) < next_turn()) return false;
   take(image, motion, mask);
-  if (taken_ <= kKeyframes) return false;
-  close();
-  return true;
+  return taken_ > kKeyframes;
 }
 
 void Turn::take(const ImageView& image, const Motion& motion, const std::uint8_t* mask) {
@@ -117,6 +116,7 @@ float Turn::likeness_turned(const Keyframe& first, double turn_rad) {
                                                                            static_cast<float>(camera.height_px - 1)));
   turned_.clear();
   for (const localization::PerceivedEdge& edge : first.edges) {
+    if (edge.half_length < kShort_px) continue;
     const auto from = there(edge.middle - edge.half_length * edge.direction);
     const auto to = there(edge.middle + edge.half_length * edge.direction);
     if (!from || !to) continue;
@@ -147,7 +147,7 @@ void Turn::close() {
     }
   };
   look_about(0.0, kMostClosing, kClosingStep);
-  look_about(best_rad, kClosingStep, kClosingStep / 8.0);
+  look_about(best_rad, kClosingStep, kClosingStep / 4.0);
   double share = 1.0;
   if (best >= kSurelyTheSame) {
     const double told_rad = last.turned_rad - first.turned_rad;

@@ -50,10 +50,13 @@ class Turn {
   /// Whether see() will look at the image that comes with this motion.
   [[nodiscard]] bool looks_at(const Motion& motion) const;
 
-  /// \return whether the turn is whole: from then on nothing more is to be seen.
+  /// \return whether the turn is whole: from then on nothing more is to be seen, and close() and gather() come next, each in an image of its own for its cost.
   bool see(const ImageView& image, const Motion& motion, const std::uint8_t* mask);
 
-  /// All that was seen; azimuth 0 is the robot's heading in the first image. Costs about as much as the edges of two images. Once the turn is whole.
+  /// Compares the last image with the one of the beginning that looks the same way, and corrects the headings.
+  void close();
+
+  /// All that was seen; azimuth 0 is the robot's heading in the first image. Once the turn is closed.
   void gather(Panorama& panorama) const;
 
   [[nodiscard]] std::span<const Keyframe> keyframes() const { return keyframes_; }
@@ -65,7 +68,6 @@ class Turn {
   [[nodiscard]] bool has_left(const Motion& motion) const;
   void take(const ImageView& image, const Motion& motion, const std::uint8_t* mask);
   [[nodiscard]] float likeness_turned(const Keyframe& first, double turn_rad);
-  void close();
 
   geometry::Pose X_RC_;
   double max_drift_m_;
