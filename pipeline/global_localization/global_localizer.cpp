@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <Eigen/Geometry>
+
 namespace cgsr::global_localization {
 namespace {
 
@@ -109,7 +110,7 @@ void GlobalLocalizer::begin_trial(const Candidate& candidate) {
   localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
   sigmas.x_m = sigmas.y_m = parameters_.place_sigma_m;
   sigmas.heading_rad = parameters_.heading_sigma_deg * kDegree;
-  const Pose X_R0R = turn_.X_R0R(*richest);
+  const Pose X_R0R = turn_.X_FR(*richest);
   tracker_.start(localization::prior_at(candidate.X_WR * X_R0R * X_RC_, sigmas));
   failed_ = 0;
   under_trial_ = true;
@@ -119,7 +120,7 @@ void GlobalLocalizer::begin_trial(const Candidate& candidate) {
 void GlobalLocalizer::end_trial(Candidate& candidate) {
   candidate.tried = true;
   candidate.last = {.X_WC = tracker_.now().X_WC, .covariance = tracker_.now().covariance};
-  const Pose X_R0R = turn_.X_R0R(turn_.keyframes().back());
+  const Pose X_R0R = turn_.X_FR(turn_.keyframes().back());
   if (candidate.corrected > 0) candidate.X_WR = candidate.last.X_WC * X_RC_.inverse() * X_R0R.inverse();
   under_trial_ = false;
   ++trial_;
@@ -146,7 +147,7 @@ bool GlobalLocalizer::try_candidates(WorkBudget& budget, const std::uint8_t* mas
       ++next_keyframe_;
       if (next_keyframe_ < turn_.keyframes().size()) {
         const Keyframe& next = turn_.keyframes()[next_keyframe_];
-        tracker_.moved(turn_.X_R0R(keyframe).inverse() * turn_.X_R0R(next));
+        tracker_.moved(turn_.X_FR(keyframe).inverse() * turn_.X_FR(next));
       }
       return false;  // edges are perceived once an image
     }

@@ -17,8 +17,9 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kKeyframeTurn = 2.0 * std::numbers::pi / kKeyframes;
 constexpr double kTurnTolerance = 0.5 * kDegree;  // of an image that comes just before it has turned so far
 constexpr std::size_t kClosing = 3;               // images of the beginning, of which one closes the turn
-constexpr double kMostClosing = 36.0 * kDegree;   // that the odometry of one turn may be off
+constexpr int kClosingSteps = 12;                 // by these the odometry of one turn may be off: 36 degrees
 constexpr double kClosingStep = 3.0 * kDegree;
+constexpr int kFiner = 4;
 constexpr float kShort_px = 5.0F;  // half of an edge that says too little for its cost
 constexpr double kLeastDepth = 0.1;
 constexpr float kSurelyTheSame = 0.5F;  // agreement of two images
@@ -140,14 +141,15 @@ void Turn::close() {
   field_.build(perception_.edges());  // of the last image, which was taken just now
   double best_rad = 0.0;
   float best = -1.0F;
-  const auto look_about = [&](double middle_rad, double reach_rad, double step_rad) {
-    for (double turn_rad = middle_rad - reach_rad; turn_rad <= middle_rad + reach_rad; turn_rad += step_rad) {
+  const auto look_about = [&](double middle_rad, int steps, double step_rad) {
+    for (int i = -steps; i <= steps; ++i) {
+      const double turn_rad = middle_rad + i * step_rad;
       const float likeness = likeness_turned(first, turn_rad);
       if (likeness > best) best = likeness, best_rad = turn_rad;
     }
   };
-  look_about(0.0, kMostClosing, kClosingStep);
-  look_about(best_rad, kClosingStep, kClosingStep / 4.0);
+  look_about(0.0, kClosingSteps, kClosingStep);
+  look_about(best_rad, kFiner, kClosingStep / kFiner);
   double share = 1.0;
   if (best >= kSurelyTheSame) {
     const double told_rad = last.turned_rad - first.turned_rad;
@@ -180,7 +182,7 @@ void Turn::gather(Panorama& panorama) const {
 }
 
 // How the robot moved since the first image, with its heading as the closed turn has it.
-Pose Turn::X_R0R(const Keyframe& keyframe) const {
+Pose Turn::X_FR(const Keyframe& keyframe) const {
   const Pose X_R0R = keyframes_.front().motion.X_OR.inverse() * keyframe.motion.X_OR;
   Pose turned = X_R0R;
   const double off = keyframe.turned_rad - geometry::heading_of(X_R0R);

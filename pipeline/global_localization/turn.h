@@ -60,8 +60,8 @@ class Turn {
   void gather(Panorama& panorama) const;
 
   [[nodiscard]] std::span<const Keyframe> keyframes() const { return keyframes_; }
-  /// How the robot moved since the first image, with its heading as the closed turn has it.
-  [[nodiscard]] geometry::Pose X_R0R(const Keyframe& keyframe) const;
+  /// The robot in its own frame of the first image: how it moved since, with its heading as the closed turn has it.
+  [[nodiscard]] geometry::Pose X_FR(const Keyframe& keyframe) const;
 
  private:
   [[nodiscard]] double next_turn() const;
