@@ -51,6 +51,17 @@ int run_localize(const LocalizeOptions& options) {
   return ended ? kSuccess : kInterrupted;
 }
 
+void add_output_options(CLI::App& command, LocalizeOptions& options, CLI::Option* anywhere) {
+  command.add_option("--csv", options.csv, "write a row for each image");
+  command.add_option("--video", options.video, "write a video with the map's edges over the images");
+  command
+      .add_option("--plan", options.plan,
+                  "with --anywhere: draw where the robot may be into a picture of the map from above")
+      ->needs(anywhere);
+  command.add_option("--json", options.json, "write the summary for machines");
+  add_force_option(command, options.force);
+}
+
 }  // namespace
 
 void add_localize_command(CLI::App& app, int& exit_code) {
@@ -101,15 +112,8 @@ void add_localize_command(CLI::App& app, int& exit_code) {
       ->check(in_range(0, 1'000'000))
       ->capture_default_str()
       ->needs(odometry);
-  command->add_option("--csv", options->csv, "write a row for each image");
-  command->add_option("--video", options->video, "write a video with the map's edges over the images");
   anywhere->needs(odometry)->needs(mount);
-  command
-      ->add_option("--plan", options->plan,
-                   "with --anywhere: draw where the robot may be into a picture of the map from above")
-      ->needs(anywhere);
-  command->add_option("--json", options->json, "write the summary for machines");
-  add_force_option(*command, options->force);
+  add_output_options(*command, *options, anywhere);
   command->callback([command, options, &exit_code] {
     if (!options->anywhere && options->pose.empty() == options->priors.empty()) {
       throw CLI::ValidationError(command->get_name(), "give either --pose, --priors or --anywhere");

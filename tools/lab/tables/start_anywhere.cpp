@@ -150,8 +150,8 @@ bool is_there(const Candidate& candidate, const geometry::Pose& X_WR) {
 
 class Trials {
  public:
-  Trials(const Setting& setting, config::Localization configuration)
-      : setting_(&setting), configuration_(std::move(configuration)) {}
+  Trials(const Setting& setting, const config::Localization& configuration)
+      : setting_(&setting), configuration_(configuration) {}
 
   Result<Start> run(int number) const {
     const std::uint32_t seed = home_seed(setting_->seed, number);
@@ -246,9 +246,9 @@ Report report_of(const std::vector<Start>& starts, std::uint64_t seed) {
 }  // namespace
 
 Result<Report> start_anywhere(const Setting& setting) {
-  auto floor = shipped_localization("floor");
+  const auto floor = shipped_localization("floor");
   if (!floor) return tl::unexpected(floor.error());
-  const Trials trials(setting, std::move(*floor));
+  const Trials trials(setting, *floor);
   std::vector<Start> starts;
   starts.reserve(static_cast<std::size_t>(setting.trials));
   for (int i = 0; i < setting.trials; ++i) {
