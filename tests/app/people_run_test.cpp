@@ -173,8 +173,11 @@ TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
   ASSERT_EQ(first.size(), 1U) << "one person of interest";
   EXPECT_GE(first.begin()->second, 40);
   const auto named = numbers_in({"people", "follow", "--config", robot(scenario), "--name", "Dora"});
-  EXPECT_GE(named.contains("2") ? named.at("2") : 0, 40);
-  EXPECT_LE(named.contains("1") ? named.at("1") : 0, 11) << "before Dora's face has a name";
+  // Her face is found within a round of the search, 16 images, and named some images after that.
+  const int before = named.contains("1") ? named.at("1") : 0;
+  const int hers = named.contains("2") ? named.at("2") : 0;
+  EXPECT_LE(before, 24) << "before Dora's face has a name";
+  EXPECT_GE(before + hers, 55) << "of 66 images";
   const auto nobody = run_cgsr({"people", "follow", "--config", robot(scenario), "--name", "Emil"});
   EXPECT_NE(nobody.exit_code, 0);
   EXPECT_THAT(nobody.errors, HasSubstr("there is no 'Emil'"));
