@@ -172,20 +172,22 @@ Phase GlobalLocalizer::verdict() {
 
 void GlobalLocalizer::begin_settling(const Candidate& candidate) {
   tracker_.start(candidate.last);
-  X_OR_before_ = turn_.keyframes().back().motion.X_OR;
+  X_LR_before_ = Pose::Identity();
   settling_images_ = 0;
 }
 
 void GlobalLocalizer::settle(const ImageView& image, const Motion& motion, WorkBudget& budget,
                              const std::uint8_t* mask) {
-  tracker_.moved(X_OR_before_.inverse() * motion.X_OR);
-  X_OR_before_ = motion.X_OR;
+  const Pose X_LR = turn_.X_LR(motion);
+  tracker_.moved(X_LR_before_.inverse() * X_LR);
+  X_LR_before_ = X_LR;
   tracker_.pitched(motion.pitch_rad, motion.axle_height_m);
   tracker_.see(image, budget, mask);
   if (tracker_.now().correction.corrected) {
     phase_ = Phase::kFound;
     settling_images_ = 0;
-  } else if (!localizer_->searching() && ++settling_images_ >= parameters_.max_settling_images) {
+  } else if (tracker_.now().correction.reason != localization::Reason::kSearching &&
+             ++settling_images_ >= parameters_.max_settling_images) {
     phase_ = Phase::kNotFound;
     settling_images_ = 0;
   }

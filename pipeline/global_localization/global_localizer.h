@@ -40,10 +40,11 @@ std::string_view to_string(Phase phase);
 /// The pose of a robot that was put down anywhere in its map, without a marker or a last run. While it turns on the spot once, twelve images make a
 /// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are handed to the
 /// localizer of chapter 4, with the images of the turn and the odometry between them. A place is the robot's when the localizer corrects it in several of
-/// these images and no other place in more than half as many.
+/// these images and no other place that was tried in more than half as many.
 /// Ours: the dissertation starts from a known pose (4.1).
 ///
-/// What perceives an image's edges comes before all units of work, as for the localizer. Threads: one caller at a time. Allocates nothing after
+/// What perceives an image's edges comes before all units of work, as for the localizer; so do closing and gathering the turn, which have an image each and
+/// cost less than that. Fewer units than kMinSearchUnits come to no end. Threads: one caller at a time. Allocates nothing after
 /// construction.
 class GlobalLocalizer {
  public:
@@ -63,7 +64,7 @@ class GlobalLocalizer {
   void restart();
 
   [[nodiscard]] Phase phase() const { return phase_; }
-  /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned all the way it should stand; but
+  /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned once and up to a sixth more it should stand; but
   /// where it then looks at a bare wall it turns on, until an image confirms the pose.
   [[nodiscard]] bool wants_turn() const { return phase_ == Phase::kTurning || settling_images_ > 0; }
   /// The camera's pose at the last image; with kFound.
@@ -95,9 +96,10 @@ class GlobalLocalizer {
   std::size_t next_keyframe_ = 0;  ///< that it sees.
   int failed_ = 0;                 ///< images that did not correct it.
   bool under_trial_ = false;
-  bool looking_ = false;                                     ///< at next_keyframe_, since an earlier image.
-  geometry::Pose X_OR_before_ = geometry::Pose::Identity();  ///< at the last image while it settles.
-  int settling_images_ = 0;                                  ///< that did not confirm the pose.
+  bool looking_ = false;  ///< at next_keyframe_, since an earlier image.
+  geometry::Pose X_LR_before_ =
+      geometry::Pose::Identity();  ///< since the turn's last image, at the image before this one.
+  int settling_images_ = 0;        ///< that did not confirm the pose.
 };
 
 }  // namespace cgsr::global_localization

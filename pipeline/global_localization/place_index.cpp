@@ -47,7 +47,11 @@ Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, doubl
   };
   const double aside = std::tan(half_width) * camera.fx_px;
   const std::array columns{camera.cx_px - aside, camera.cx_px, camera.cx_px + aside};
-  Sector sector{.middle = 0.0, .half_width = half_width, .min_elevation = -kSide, .max_elevation = kSide};
+  const Eigen::Vector3d ahead_R = X_RC.linear().col(2);
+  Sector sector{.middle = std::atan2(ahead_R.y(), ahead_R.x()),
+                .half_width = half_width,
+                .min_elevation = -kSide,
+                .max_elevation = kSide};
   for (const double column : columns) {
     sector.max_elevation = std::min(sector.max_elevation, elevation(column, 1.0));
     sector.min_elevation = std::max(sector.min_elevation, elevation(column, camera.height_px - 2.0));
@@ -70,15 +74,16 @@ PlaceIndex::PlaceIndex(const world::Map& map, const geometry::Camera& camera, co
 
 void PlaceIndex::look(std::size_t place, int side) {
   const Eigen::Vector2d& at = places_m_[place];
-  sector_.middle = side * kSide;
-  const geometry::Pose X_WC = geometry::pose_on_floor(at.x(), at.y(), sector_.middle) * X_RC_;
+  Sector sector = sector_;
+  sector.middle += side * kSide;
+  const geometry::Pose X_WC = geometry::pose_on_floor(at.x(), at.y(), side * kSide) * X_RC_;
   raster_->look(X_WC, wide_, visible_);
   view_.take(visible_, X_WC);
   view_.project(X_WC, wide_);
   for (const localization::ProjectedPiece& piece : view_.projected()) {
     panoramas_[place].add(view_.point_at(piece, -piece.half_length) - X_WC.translation(),
                           view_.point_at(piece, piece.half_length) - X_WC.translation(),
-                          static_cast<double>(piece.weight), sector_);
+                          static_cast<double>(piece.weight), sector);
   }
 }
 

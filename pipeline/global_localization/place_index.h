@@ -17,7 +17,7 @@
 
 namespace cgsr::global_localization {
 
-/// Which elevations a camera sees within `half_width` of the azimuth that it looks to, in the sector about azimuth 0.
+/// Where a camera looks when the robot heads to azimuth 0, and which elevations it sees within `half_width` of that.
 /// \param camera  without lens.
 Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, double half_width);
 
@@ -43,7 +43,7 @@ class PlaceIndex {
 
   geometry::Pose X_RC_;
   geometry::Camera wide_;  ///< sees a third of the panorama.
-  Sector sector_;
+  Sector sector_;          ///< of a look when the robot heads to azimuth 0.
   std::unique_ptr<render::DepthRaster> raster_;
   localization::ExpectedView view_;
   std::vector<render::VisiblePiece> visible_;

@@ -28,6 +28,20 @@ double turn_between(const Pose& a, const Pose& b) {
   return std::remainder(geometry::heading_of(b) - geometry::heading_of(a), 2.0 * std::numbers::pi);
 }
 
+// How the base leans, about its axle.
+Pose leaning(const Motion& motion) {
+  const Eigen::Vector3d axle(0.0, 0.0, motion.axle_height_m);
+  Pose tilt = Pose::Identity();
+  tilt.linear() = Eigen::AngleAxisd(motion.pitch_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  tilt.translation() = axle - tilt.linear() * axle;
+  return tilt;
+}
+
+// The odometry without it.
+Pose level(const Motion& motion) {
+  return motion.X_OR * leaning(motion).inverse();
+}
+
 }  // namespace
 
 Turn::Turn(const geometry::Camera& camera, const Pose& X_RC, double max_drift_m)
@@ -48,6 +62,7 @@ Turn::Turn(const geometry::Camera& camera, const Pose& X_RC, double max_drift_m)
 void Turn::restart() {
   taken_ = 0;
   turned_rad_ = 0.0;
+  share_ = 1.0;
 }
 
 bool Turn::looks_at(const Motion& motion) const {
@@ -66,10 +81,16 @@ bool Turn::has_left(const Motion& motion) const {
   return (motion.X_OR.translation() - X_OR_first.translation()).norm() > max_drift_m_;
 }
 
+// It turned back beyond where it began: what was seen there would be seen twice, and the rest never.
+bool Turn::has_reversed() const {
+  return taken_ > 1 && turned_rad_ * keyframes_[1].turned_rad < 0.0 && std::abs(turned_rad_) > 0.5 * kKeyframeTurn;
+}
+
 bool Turn::see(const ImageView& image, const Motion& motion, const std::uint8_t* mask) {
+  if (!motion.X_OR.matrix().allFinite() || !std::isfinite(motion.pitch_rad)) return false;
   if (taken_ > 0) {
     turned_rad_ += turn_between(X_OR_before_, motion.X_OR);
-    if (has_left(motion)) restart();
+    if (has_left(motion) || has_reversed()) restart();
   }
   X_OR_before_ = motion.X_OR;
   if (std::abs(turned_rad_) < next_turn()) return false;
@@ -155,6 +176,7 @@ void Turn::close() {
     const double told_rad = last.turned_rad - first.turned_rad;
     share = 1.0 - std::remainder(told_rad - best_rad, 2.0 * std::numbers::pi) / told_rad;
   }
+  share_ = share;
   for (Keyframe& keyframe : keyframes_) keyframe.turned_rad *= share;
 }
 
@@ -163,7 +185,7 @@ void Turn::gather(Panorama& panorama) const {
   panorama.clear();
   for (const Keyframe& keyframe : std::span(keyframes_).first<kKeyframes>()) {
     Sector sector = sector_;
-    sector.middle = keyframe.turned_rad;
+    sector.middle += keyframe.turned_rad;
     const Eigen::Matrix3d R = (Eigen::AngleAxisd(keyframe.turned_rad, Eigen::Vector3d::UnitZ()) *
                                Eigen::AngleAxisd(keyframe.motion.pitch_rad, Eigen::Vector3d::UnitY()))
                                   .toRotationMatrix() *
@@ -181,13 +203,18 @@ void Turn::gather(Panorama& panorama) const {
   panorama.finish();
 }
 
-// How the robot moved since the first image, with its heading as the closed turn has it.
-Pose Turn::X_FR(const Keyframe& keyframe) const {
-  const Pose X_R0R = keyframes_.front().motion.X_OR.inverse() * keyframe.motion.X_OR;
-  Pose turned = X_R0R;
-  const double off = keyframe.turned_rad - geometry::heading_of(X_R0R);
-  turned.linear() = Eigen::AngleAxisd(off, Eigen::Vector3d::UnitZ()).toRotationMatrix() * X_R0R.linear();
-  return turned;
+Pose Turn::X_FR(const Motion& motion, double turned_rad) const {
+  const Motion& first = keyframes_.front().motion;
+  const Pose X_FO = level(first).inverse();
+  Pose X_FR = X_FO * level(motion);
+  X_FR.linear() = Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return X_FR * leaning(motion);
+}
+
+Pose Turn::X_LR(const Motion& motion) const {
+  const Keyframe& last = keyframes_.back();
+  const double turned_rad = last.turned_rad + share_ * turn_between(last.motion.X_OR, motion.X_OR);
+  return X_FR(last).inverse() * X_FR(motion, turned_rad);
 }
 
 }  // namespace cgsr::global_localization

@@ -60,11 +60,17 @@ class Turn {
   void gather(Panorama& panorama) const;
 
   [[nodiscard]] std::span<const Keyframe> keyframes() const { return keyframes_; }
-  /// The robot in its own frame of the first image: how it moved since, with its heading as the closed turn has it.
-  [[nodiscard]] geometry::Pose X_FR(const Keyframe& keyframe) const;
+  /// The robot in the level frame below it at the first image: how it moved since and leans, with its heading as the closed turn has it.
+  [[nodiscard]] geometry::Pose X_FR(const Keyframe& keyframe) const {
+    return X_FR(keyframe.motion, keyframe.turned_rad);
+  }
+  /// How the robot moved since the last image of the turn, its odometry corrected as that of the turn was.
+  [[nodiscard]] geometry::Pose X_LR(const Motion& motion) const;
 
  private:
+  [[nodiscard]] geometry::Pose X_FR(const Motion& motion, double turned_rad) const;
   [[nodiscard]] double next_turn() const;
+  [[nodiscard]] bool has_reversed() const;
   [[nodiscard]] bool has_left(const Motion& motion) const;
   void take(const ImageView& image, const Motion& motion, const std::uint8_t* mask);
   [[nodiscard]] float likeness_turned(const Keyframe& first, double turn_rad);
@@ -79,6 +85,7 @@ class Turn {
   int taken_ = 0;
   std::size_t closed_ = 0;  ///< the image that the last one closes the turn with.
   double turned_rad_ = 0.0;
+  double share_ = 1.0;  ///< of what the odometry says it turned.
   geometry::Pose X_OR_before_ = geometry::Pose::Identity();
 };
 

@@ -9,6 +9,11 @@
 #include "pipeline/behavior/free_floor.h"
 
 namespace cgsr::app {
+namespace {
+
+constexpr double kMostFloor_m2 = 2000.0;  // half a gigabyte of panoramas
+
+}  // namespace
 
 using global_localization::Candidate;
 using global_localization::GlobalLocalizerParameters;
@@ -19,6 +24,12 @@ Result<std::unique_ptr<FirstPose>> FirstPose::make(const world::Map& map, const 
                                                    const config::Localization& config) {
   const GlobalLocalizerParameters parameters;
   const behavior::FreeFloor floor(map, {.min_clearance_m = parameters.clearance_m});
+  if (floor.width_m() * floor.depth_m() > kMostFloor_m2) {
+    return fail(fmt::format(
+        "{}: covers {:.0f} x {:.0f} m: --anywhere searches at most {:.0f} square metres; is the map in metres "
+        "(--scale)?",
+        map_file, floor.width_m(), floor.depth_m(), kMostFloor_m2));
+  }
   auto places = global_localization::grid_of_places(map, parameters.spacing_m,
                                                     [&](double x_m, double y_m) { return floor.is_free(x_m, y_m); });
   if (places.empty()) {

@@ -16,7 +16,7 @@ namespace cgsr::app {
 /// floor.
 class FirstPose {
  public:
-  /// \param map  outlives it.  \param map_file  its name, for the error's words: it has no free floor.
+  /// \param map  outlives it.  \param map_file  its name, for the error's words: it has no free floor, or too much.
   static Result<std::unique_ptr<FirstPose>> make(const world::Map& map, const std::string& map_file,
                                                  const geometry::Camera& camera, const geometry::Pose& X_RC,
                                                  const config::Localization& config);

@@ -38,8 +38,10 @@ int run_localize(const LocalizeOptions& options) {
                                 {"edges", run->map().edges.size()},
                                 {"max_units", run->max_units()},
                                 {"config_sha256", hash}};
-    if (options.anywhere)
+    if (options.anywhere) {
+      json["first_pose"] = to_string(run->first_pose_phase());
       json["found_in"] = run->found_in() ? nlohmann::ordered_json(*run->found_in()) : nlohmann::ordered_json(nullptr);
+    }
     if (auto written = write_file(options.json, json.dump(1) + "\n"); !written) return report(written.error());
   }
   fmt::print("{} images{}, pose corrected in {}\n", run->images(), ended ? "" : " until it was stopped",
@@ -74,13 +76,13 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   auto* pose = command->add_option("--pose", options->pose, "CSV with the pose of image 0: follow from there");
   auto* priors = command->add_option("--priors", options->priors, "CSV with a pose for each image: correct each one");
   pose->excludes(priors);
-  auto* anywhere =
-      command
-          ->add_flag("--anywhere", options->anywhere,
-                     "no pose is known: the robot turns on the spot once and stands then; the search over the whole "
-                     "map goes on until it is found, and it is followed from there")
-          ->excludes(pose)
-          ->excludes(priors);
+  auto* anywhere = command
+                       ->add_flag("--anywhere", options->anywhere,
+                                  "no pose is known: the robot turns on the spot, once and up to a sixth more, and "
+                                  "stands then; the search over the whole "
+                                  "map goes on until it is found, and it is followed from there")
+                       ->excludes(pose)
+                       ->excludes(priors);
   auto* odometry = command
                        ->add_option("--odometry", options->odometry,
                                     "CSV with the robot's pose in its odometry's frame, a row for each image")

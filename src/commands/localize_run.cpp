@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/localization/work.h"
 #include "pipeline/world/load.h"
 #include "platform/count_marks.h"
 #include "platform/stop.h"
@@ -132,6 +133,10 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
         fmt::format("{}: tracker.floor = false: --anywhere finds the pose of a robot on a floor, as with "
                     "config/localization/floor.toml",
                     options.config.empty() ? "without --config" : options.config));
+  }
+  if (options.anywhere && options.units > 0 && options.units < localization::kMinSearchUnits) {
+    return fail(fmt::format("--units {}: --anywhere needs at least {} for each image, or 0 for all it asks for",
+                            options.units, localization::kMinSearchUnits));
   }
   std::optional<geometry::Pose> start;
   if (!options.anywhere) {
@@ -335,11 +340,11 @@ Result<bool> LocalizeRun::step() {
 Result<void> LocalizeRun::finish() {
   if (state_->first_pose) {
     const FirstPose& first = *state_->first_pose;
-    notes_.push_back(
-        first.outcome().empty()
-            ? fmt::format("first pose: not found: the images end while {}; one turn on the spot is needed, and then {}",
-                          to_string(first.phase()), "images without motion until it is found")
-            : first.outcome());
+    notes_.push_back(first.outcome().empty()
+                         ? fmt::format("first pose: not found: the images end while {}; a turn on the spot and a sixth "
+                                       "of one more are needed, and then {}",
+                                       to_string(first.phase()), "images without motion until it is found")
+                         : first.outcome());
     if (auto drawn = draw_plan(); !drawn) return drawn;
   }
   return video_ ? video_->close() : Result<void>{};

@@ -66,6 +66,8 @@ class LocalizeRun {
   [[nodiscard]] std::uint32_t max_units() const { return units_most_; }
   /// The image in which --anywhere found the pose.
   [[nodiscard]] std::optional<std::int64_t> found_in() const { return found_in_; }
+  /// How far --anywhere came at last.
+  [[nodiscard]] global_localization::Phase first_pose_phase() const { return state_->first_pose->phase(); }
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
   [[nodiscard]] const world::Map& map() const { return *state_->map; }
 

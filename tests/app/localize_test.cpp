@@ -149,6 +149,7 @@ TEST_F(TurningFilm, FindsTheFirstPoseAndFollowsFromThere) {
   EXPECT_TRUE(std::filesystem::exists(file("plan.png")));
   const auto json = nlohmann::json::parse(read_text(file("found.json")));
   ASSERT_TRUE(json.at("found_in").is_number()) << run.errors;
+  EXPECT_EQ(json.at("first_pose"), "found");
   EXPECT_GE(json.at("found_in"), 12);
   EXPECT_EQ(json.at("corrected"), kAll - json.at("found_in").get<int>());
   std::istringstream lines(read_text(file("found.csv")));
@@ -166,6 +167,11 @@ TEST_F(TurningFilm, NeedsAFloorAMountAndOdometry) {
                                  file("room/map.obj"), file("room/calibrated/camera.yaml"), file("turn"));
   EXPECT_NE(no_floor.exit_code, 0);
   EXPECT_THAT(no_floor.errors, HasSubstr("tracker.floor = false: --anywhere finds the pose of a robot on a floor"));
+  const auto few = localize(
+      {"--anywhere", "--odometry", file("turn.csv"), "--mount", file("mount.csv"), "--config", kFloor, "--units", "3"},
+      file("room/map.obj"), file("room/calibrated/camera.yaml"), file("turn"));
+  EXPECT_NE(few.exit_code, 0);
+  EXPECT_THAT(few.errors, HasSubstr("--units 3: --anywhere needs at least 6"));
   const auto both = localize_turn({"--mount", file("mount.csv"), "--pose", file("pose.csv")});
   EXPECT_THAT(both.errors, HasSubstr("--pose excludes --anywhere"));
 }

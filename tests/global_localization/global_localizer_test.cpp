@@ -63,11 +63,16 @@ class PutDownAnywhere : public ::testing::Test {
     // The odometry began elsewhere, and turns too far.
     turned_ += std::remainder(geometry::heading_of(X_R0R) - std::remainder(turned_, 2.0 * std::numbers::pi),
                               2.0 * std::numbers::pi);
+    const double pitch_rad = images_ == 0 ? lean_rad_ : (images_ % 3 - 1) * 0.3 * lean_rad_;
     const Motion motion{
         .X_OR = geometry::pose_on_floor(5.0, 7.0, 2.0) *
-                geometry::pose_on_floor(X_R0R.translation().x(), X_R0R.translation().y(), odometry_turns_ * turned_)};
+                geometry::pose_on_floor(X_R0R.translation().x(), X_R0R.translation().y(), odometry_turns_ * turned_) *
+                leaning(pitch_rad),
+        .pitch_rad = pitch_rad,
+        .axle_height_m = kAxle_m};
     ++images_;
-    if (searcher_->looks_at(motion)) picture_.emplace(map_, X_WR * X_RC_, camera_, 1.5, images_);
+    X_WC_ = X_WR * leaning(pitch_rad) * X_RC_;
+    if (searcher_->looks_at(motion)) picture_.emplace(map_, X_WC_, camera_, 1.5, static_cast<std::uint32_t>(images_));
     return searcher_->update(picture_->view(), motion, budget);
   }
 
@@ -78,10 +83,27 @@ class PutDownAnywhere : public ::testing::Test {
     while (searcher_->phase() < Phase::kFound && images_ < 2000) {
       X_WR_ = X_W0 * geometry::pose_on_floor(0.0, 0.0, turned);
       see(X_WR_, budget);
-      if (searcher_->wants_turn()) turned += kTurn;
+      if (searcher_->wants_turn()) turned += way_round_ * kTurn;
     }
     return searcher_->phase();
   }
+
+  static Pose leaning(double pitch_rad) {
+    const Eigen::Vector3d axle(0.0, 0.0, kAxle_m);
+    Pose tilt = Pose::Identity();
+    tilt.linear() = Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    tilt.translation() = axle - tilt.linear() * axle;
+    return tilt;
+  }
+
+  /// Found where it is, by so much.
+  void expect_right(double distance_m = 0.03, double turn_rad = 1.0 * kDegree) const {
+    const geometry::Vector6d off = geometry::step_between(X_WC_, searcher_->found().X_WC);
+    EXPECT_LT(off.head<3>().norm(), distance_m);
+    EXPECT_LT(off.tail<3>().norm(), turn_rad);
+  }
+
+  static constexpr double kAxle_m = 0.24;
 
   world::Map map_;
   geometry::Camera camera_;
@@ -92,8 +114,11 @@ class PutDownAnywhere : public ::testing::Test {
   Pose X_W0_ = Pose::Identity();
   Pose X_WR_ = Pose::Identity();  ///< where it is at last.
   double turned_ = 0.0;
-  double odometry_turns_ = 1.0;  ///< of what the robot turns.
-  std::uint32_t images_ = 0;
+  double odometry_turns_ = 1.0;   ///< of what the robot turns.
+  double lean_rad_ = 0.0;         ///< in the first image; less in those that follow.
+  int way_round_ = 1;             ///< -1: to the right.
+  Pose X_WC_ = Pose::Identity();  ///< where the camera is.
+  int images_ = 0;
   std::optional<Picture> picture_;  ///< the last that was looked at.
 };
 
@@ -103,10 +128,8 @@ TEST_F(PutDownAnywhere, FindsItselfByTurningOnce) {
     images_ = 0;
     turned_ = 0.0;
     ASSERT_EQ(turn(geometry::pose_on_floor(x_m, y_m, heading), whole_), Phase::kFound) << x_m << ", " << y_m;
-    const geometry::Vector6d off = geometry::step_between(X_WR_ * X_RC_, searcher_->found().X_WC);
-    EXPECT_LT(off.head<3>().norm(), 0.03);
-    EXPECT_LT(off.tail<3>().norm(), 1.0 * kDegree);
-    EXPECT_LE(images_, 36U + 200U);
+    expect_right();
+    EXPECT_LE(images_, 36 + 200);
   }
 }
 
@@ -118,9 +141,40 @@ TEST_F(PutDownAnywhere, BelievesTheImagesHowFarItTurned) {
     turned_ = 0.0;
     odometry_turns_ = share;
     ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound) << share;
-    const geometry::Vector6d off = geometry::step_between(X_WR_ * X_RC_, searcher_->found().X_WC);
-    EXPECT_LT(off.head<3>().norm(), 0.03) << share;
+    expect_right();
   }
+}
+
+TEST_F(PutDownAnywhere, TurnsEitherWayRound) {
+  way_round_ = -1;
+  odometry_turns_ = 1.04;
+  ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound);
+  expect_right();
+}
+
+// A base that balances leans most where it begins to turn: that is not the mount's.
+TEST_F(PutDownAnywhere, LeansInTheFirstImage) {
+  lean_rad_ = 2.5 * kDegree;
+  ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound);
+  expect_right();
+}
+
+// It stands before a bare wall when the turn is whole, and turns on with odometry that turns too far.
+TEST_F(PutDownAnywhere, TurnsOnBeforeABareWall) {
+  odometry_turns_ = 1.06;
+  ASSERT_EQ(turn(geometry::pose_on_floor(1.5, 0.8, 3.0), whole_), Phase::kFound);
+  expect_right();
+}
+
+// What it saw to the left of where it began is not seen again to the right.
+TEST_F(PutDownAnywhere, BeginsAnewWhereItTurnsBack) {
+  X_W0_ = geometry::pose_on_floor(2.2, 2.1, -2.0);
+  for (int i = 0; i <= 9; ++i) see(X_W0_ * geometry::pose_on_floor(0.0, 0.0, i * kTurn), whole_);
+  int images = 0;
+  for (double turned = 9 * kTurn; searcher_->wants_turn() && images < 100; turned -= kTurn, ++images)
+    see(X_W0_ * geometry::pose_on_floor(0.0, 0.0, turned), whole_);
+  EXPECT_GE(images, 9 + 36);  // back, and all the way round
+  EXPECT_LT(images, 100);
 }
 
 // A robot does as much in each image as its stage's budget holds, and comes to the same answer.
@@ -157,6 +211,9 @@ TEST_F(PutDownAnywhere, BeginsAnewWhereItWasMoved) {
   const Pose X_W1 = X_W0_ * geometry::pose_on_floor(0.8, 0.2, 18 * kTurn);
   for (int i = 0; i < 43; ++i) {
     see(X_W1 * geometry::pose_on_floor(0.0, 0.0, i * kTurn), whole_);
+    if (i < 35) {
+      EXPECT_TRUE(searcher_->wants_turn()) << i;
+    }
   }
   EXPECT_FALSE(searcher_->wants_turn());
 }
