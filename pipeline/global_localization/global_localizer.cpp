@@ -15,9 +15,17 @@ using geometry::Pose;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kFirstKeyframes = 4;  // of which the trial begins with the richest
 
-localization::PoseTrackerParameters with_slip(localization::PoseTrackerParameters tracking, double slip_turn) {
-  tracking.slip_turn = std::min(tracking.slip_turn, slip_turn);
+// Between two images of the turn the heading is known better than by the odometry alone, and the place less well: no base pivots on a point.
+localization::PoseTrackerParameters for_turn(localization::PoseTrackerParameters tracking,
+                                             const GlobalLocalizerParameters& parameters) {
+  tracking.slip_turn = std::min(tracking.slip_turn, parameters.slip_turn);
+  tracking.drift_m = std::max(tracking.drift_m, parameters.drift_m);
   return tracking;
+}
+
+bool is_sure(const geometry::Matrix6d& covariance, const GlobalLocalizerParameters& parameters) {
+  return std::sqrt(covariance.topLeftCorner<2, 2>().trace()) <= parameters.max_sigma_m &&
+         std::sqrt(covariance(5, 5)) <= parameters.max_sigma_deg * kDegree;
 }
 
 }  // namespace
@@ -49,7 +57,8 @@ GlobalLocalizer::GlobalLocalizer(const world::Map& map, const geometry::Camera& 
     : X_RC_(X_RC),
       parameters_(parameters),
       localizer_(&localizer),
-      tracker_(localizer, X_RC, with_slip(tracking, parameters.slip_turn)),
+      tracker_(localizer, X_RC, for_turn(tracking, parameters)),
+      live_(localizer, X_RC, tracking),
       turn_(camera, X_RC, parameters.max_drift_m),
       index_(map, localization::working_camera(camera).without_distortion(), X_RC, std::move(places_m)),
       search_(index_, parameters) {}
@@ -171,7 +180,7 @@ Phase GlobalLocalizer::verdict() {
 }
 
 void GlobalLocalizer::begin_settling(const Candidate& candidate) {
-  tracker_.start(candidate.last);
+  live_.start(candidate.last);
   X_LR_before_ = Pose::Identity();
   settling_images_ = 0;
 }
@@ -179,14 +188,14 @@ void GlobalLocalizer::begin_settling(const Candidate& candidate) {
 void GlobalLocalizer::settle(const ImageView& image, const Motion& motion, WorkBudget& budget,
                              const std::uint8_t* mask) {
   const Pose X_LR = turn_.X_LR(motion);
-  tracker_.moved(X_LR_before_.inverse() * X_LR);
+  live_.moved(X_LR_before_.inverse() * X_LR);
   X_LR_before_ = X_LR;
-  tracker_.pitched(motion.pitch_rad, motion.axle_height_m);
-  tracker_.see(image, budget, mask);
-  if (tracker_.now().correction.corrected) {
+  live_.pitched(motion.pitch_rad, motion.axle_height_m);
+  live_.see(image, budget, mask);
+  if (live_.now().correction.corrected && is_sure(live_.now().covariance, parameters_)) {
     phase_ = Phase::kFound;
     settling_images_ = 0;
-  } else if (tracker_.now().correction.reason != localization::Reason::kSearching &&
+  } else if (live_.now().correction.reason != localization::Reason::kSearching &&
              ++settling_images_ >= parameters_.max_settling_images) {
     phase_ = Phase::kNotFound;
     settling_images_ = 0;

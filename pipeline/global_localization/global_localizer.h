@@ -68,7 +68,7 @@ class GlobalLocalizer {
   /// where it then looks at a bare wall it turns on, until an image confirms the pose.
   [[nodiscard]] bool wants_turn() const { return phase_ == Phase::kTurning || settling_images_ > 0; }
   /// The camera's pose at the last image; with kFound.
-  [[nodiscard]] const localization::TrackedPose& found() const { return tracker_.now(); }
+  [[nodiscard]] const localization::TrackedPose& found() const { return live_.now(); }
   /// The most alike first; from kTrying on.
   [[nodiscard]] std::span<const Candidate> candidates() const { return search_.candidates(); }
 
@@ -84,7 +84,8 @@ class GlobalLocalizer {
   geometry::Pose X_RC_;
   GlobalLocalizerParameters parameters_;
   localization::Localizer* localizer_;
-  localization::PoseTracker tracker_;
+  localization::PoseTracker tracker_;  ///< of a candidate, over the images of the turn.
+  localization::PoseTracker live_;     ///< of the best one, over the images that come after it.
   Turn turn_;
   PlaceIndex index_;
   CandidateSearch search_;

@@ -14,12 +14,15 @@ struct GlobalLocalizerParameters {
   double place_sigma_m = 0.08;     ///< of a candidate's place along x and y, from which the localizer tries it.
   double heading_sigma_deg = 2.5;  ///< of its heading.
   double slip_turn = 0.01;         ///< of the odometry's turns between these images, once the whole turn is known.
+  double drift_m = 0.01;           ///< of the place between two of them, which the odometry of a turn does not tell.
   double min_likeness_share =
-      0.85;                       ///< of the best candidate's: others are tried too, although the best one was right.
-  int min_corrected = 4;          ///< images of the turn in which the localizer must correct a candidate's pose.
-  double max_rival_share = 0.5;   ///< of these, in how many another place may be corrected as well.
-  double same_m = 0.3;            ///< tried candidates that come this near to each other are one place.
-  int max_failed = 6;             ///< a candidate is given up when none of so many images corrected it.
+      0.85;                      ///< of the best candidate's: others are tried too, although the best one was right.
+  int min_corrected = 4;         ///< images of the turn in which the localizer must correct a candidate's pose.
+  double max_rival_share = 0.5;  ///< of these, in how many another place may be corrected as well.
+  double same_m = 0.3;           ///< tried candidates that come this near to each other are one place.
+  int max_failed = 6;            ///< a candidate is given up when none of so many images corrected it.
+  double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,
+  double max_sigma_deg = 0.5;   ///< ... and its heading to a third of 1.5 degrees.
   int max_settling_images = 250;  ///< after which no image confirmed the pose: most of a turn.
 };
 

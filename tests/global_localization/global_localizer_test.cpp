@@ -129,7 +129,7 @@ TEST_F(PutDownAnywhere, FindsItselfByTurningOnce) {
     turned_ = 0.0;
     ASSERT_EQ(turn(geometry::pose_on_floor(x_m, y_m, heading), whole_), Phase::kFound) << x_m << ", " << y_m;
     expect_right();
-    EXPECT_LE(images_, 36 + 200);
+    EXPECT_LE(images_, 36 + GlobalLocalizerParameters{}.max_settling_images);
   }
 }
 

@@ -42,7 +42,7 @@ struct Experiment {
   Result<Report> (*run)(const Setting&);
   Result<std::string> (*config_sha256)(const Setting&);  ///< of exactly the sections that it measures with.
   std::span<const std::string_view> rooms;  ///< whose sources it measures, and the simulator's that it measures with.
-  std::array<std::string_view, 4> own;      ///< its own sources and worlds; empty: none.
+  std::array<std::string_view, 5> own;      ///< its own sources and worlds; empty: none.
 
   /// \return rooms and own.
   [[nodiscard]] std::vector<std::string_view> sources() const;

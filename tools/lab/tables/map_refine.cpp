@@ -13,6 +13,7 @@
 #include "hal/sim/generator/home.h"
 #include "pipeline/mapping/propose.h"
 #include "pipeline/mapping/refine.h"
+#include "tools/lab/drawn_home.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/trial.h"
 #include "tools/lab/mapping/drive.h"
@@ -21,7 +22,6 @@
 namespace cgsr::lab {
 namespace {
 
-constexpr std::uint64_t kTuningSeeds = 1000;  // below them for tuning and tests, never published
 constexpr int kImages = 100;
 constexpr double kMapSigma_m = 0.05;
 constexpr int kObserved = 10;  // matches at a corner's edges from which on it counts as observed
@@ -40,11 +40,7 @@ struct Case {
   int chairs_proposed = 0;
 };
 
-std::uint32_t home_seed(std::uint64_t seed, int number) {
-  const std::uint64_t drawn = Random(seed).fork(0x41).fork(static_cast<std::uint64_t>(number)).next();
-  if (seed < kTuningSeeds) return static_cast<std::uint32_t>(drawn % kTuningSeeds);
-  return static_cast<std::uint32_t>(kTuningSeeds + drawn % (sim::kMaxHomeSeed - kTuningSeeds));
-}
+constexpr std::uint64_t kHomes = 0x41;  // stream of random numbers
 
 // How far corners are off after one common shift, which no image shows, is taken out.
 double mean_aligned_cm(const std::vector<Eigen::Vector3d>& off) {
@@ -156,7 +152,7 @@ void add_rows(const Case& of, Report& report) {
 Result<Report> map_refine(const Setting& setting) {
   std::array cases{Case{MapError::kParts, 0.01}, Case{MapError::kCorners, 0.05}};
   for (int number = 0; number < setting.trials; ++number) {
-    const std::uint32_t seed = home_seed(setting.seed, number);
+    const std::uint32_t seed = home_seed(setting.seed, kHomes, number);
     const auto home = sim::generate_home(seed);
     if (!home) return tl::unexpected(home.error());
     auto place = Place::make(home->world, home->world.name);

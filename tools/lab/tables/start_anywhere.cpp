@@ -17,6 +17,7 @@
 #include "pipeline/behavior/free_floor.h"
 #include "pipeline/global_localization/global_localizer.h"
 #include "pipeline/runtime/stage_budget.h"
+#include "tools/lab/drawn_home.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/trial.h"
 
@@ -28,7 +29,6 @@ using global_localization::GlobalLocalizer;
 using global_localization::Motion;
 using global_localization::Phase;
 
-constexpr std::uint64_t kTuningSeeds = 1000;  // below them for tuning and tests, never published
 constexpr double kDeg = 180.0 / std::numbers::pi;
 constexpr double kFromWall_m = 0.4;
 constexpr double kRobotRadius_m = 0.3;
@@ -63,11 +63,7 @@ struct Start {
   }
 };
 
-std::uint32_t home_seed(std::uint64_t seed, int number) {
-  const std::uint64_t drawn = Random(seed).fork(0x43).fork(static_cast<std::uint64_t>(number)).next();
-  if (seed < kTuningSeeds) return static_cast<std::uint32_t>(drawn % kTuningSeeds);
-  return static_cast<std::uint32_t>(kTuningSeeds + drawn % (sim::kMaxHomeSeed - kTuningSeeds));
-}
+constexpr std::uint64_t kHomes = 0x43;  // stream of random numbers
 
 /// A base that turns on the spot, and what it tells of that.
 class Turn {
@@ -162,7 +158,7 @@ class Trials {
       : setting_(&setting), configuration_(configuration) {}
 
   Result<Start> run(int number) const {
-    const std::uint32_t seed = home_seed(setting_->seed, number);
+    const std::uint32_t seed = home_seed(setting_->seed, kHomes, number);
     const auto home = sim::generate_home(seed);
     if (!home) return tl::unexpected(home.error());
     auto place = Place::make(home->world, home->world.name);
