@@ -6,6 +6,7 @@
 #include "tests/support/scratch_folder.h"
 #include "tools/lab/join.h"
 #include "tools/lab/page.h"
+#include "tools/lab/repeat.h"
 #include "tools/lab/sources.h"
 #include "tools/lab/store.h"
 #include "tools/lab/tables/requirements.h"
@@ -74,6 +75,54 @@ TEST(Joined, RefusesWhatWasNotMeasuredAlike) {
   EXPECT_FALSE(joined(a, other_sources));
   EXPECT_FALSE(joined(a, other_configuration));
   EXPECT_FALSE(joined(a, a)) << "the same trials twice";
+}
+
+Report at_new_sources(Report report) {
+  report.sources_sha256 = std::string(64, 'n');
+  report.runs[0].commit = "ba9876543210";
+  return report;
+}
+
+// A change that moves none of the trials that were measured again is one that the table does not measure.
+TEST(Repeated, TakesTheNewSourcesWhereTheFirstTrialsAreTheSame) {
+  const Report stored = *joined(run_of(1001, {1.0, 2.0, 5.0}, 2, 3, 8.0), run_of(1002, {3.0}, 1, 1, 9.0));
+
+  const auto both = repeated(stored, at_new_sources(run_of(1001, {1.0, 2.0}, 2, 2, 4.0)));
+
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->sources_sha256, std::string(64, 'n'));
+  EXPECT_EQ(both->rows[0].samples, stored.rows[0].samples) << "the figures are those of before";
+  ASSERT_TRUE(both->repetition);
+  EXPECT_EQ(both->repetition->trials, 2);
+  EXPECT_EQ(both->repetition->figures, 4) << "errors and their median; cost and shares of fewer trials say nothing";
+  EXPECT_EQ(both->repetition->commit, "ba9876543210");
+  EXPECT_EQ(reports_of(to_json_text({*both})).value().front().repetition->trials, 2);
+}
+
+TEST(Repeated, NamesTheFirstFigureThatDiffers) {
+  const Report stored = run_of(1001, {1.0, 2.0, 5.0}, 2, 3, 8.0);
+
+  const auto other = repeated(stored, at_new_sources(run_of(1001, {1.0, 2.5}, 2, 2, 4.0)));
+  const auto longer = repeated(stored, at_new_sources(run_of(1001, {1.0, 2.0, 5.0, 6.0}, 2, 3, 8.0)));
+  const auto fewer_found = repeated(stored, at_new_sources(run_of(1001, {1.0, 2.0, 5.0}, 1, 3, 8.0)));
+
+  ASSERT_FALSE(other);
+  EXPECT_EQ(other.error().message, "table-4.1: 'ours: position error', sample 1: 2.5 now, 2 before");
+  EXPECT_FALSE(longer);
+  ASSERT_FALSE(fewer_found) << "of all trials shares are compared too";
+  EXPECT_NE(fewer_found.error().message.find("'ours: corrected'"), std::string::npos);
+}
+
+TEST(Repeated, RefusesOtherTrialsAndWhatHasNothingToCompare) {
+  const Report stored = run_of(1001, {1.0, 2.0}, 2, 2, 8.0);
+  Report without_samples = stored;
+  without_samples.rows = {stored.rows[1]};
+  Report shares = run_of(1001, {1.0}, 1, 1, 8.0);
+  shares.rows = {shares.rows[1]};
+
+  EXPECT_FALSE(repeated(stored, at_new_sources(run_of(1002, {1.0}, 1, 1, 8.0)))) << "another seed";
+  EXPECT_FALSE(repeated(stored, at_new_sources(run_of(1001, {1.0, 2.0, 3.0}, 2, 3, 8.0)))) << "more trials";
+  EXPECT_FALSE(repeated(without_samples, at_new_sources(shares)));
 }
 
 TEST(Store, GivesBackWhatWasPutIn) {
@@ -175,6 +224,14 @@ TEST(Page, MarksWhatIsStaleAndIsOtherwiseTheSame) {
   EXPECT_NE(stale.find("(stale: sources changed)"), std::string::npos);
   EXPECT_EQ(without_stale_marks(stale), fresh);
   EXPECT_EQ(fresh.find("(stale"), std::string::npos);
+}
+
+TEST(Page, SaysWhatWasRepeated) {
+  auto entries = entries_with(Staleness::kFresh);
+  entries[0].stored->repetition = Repetition{"ba9876543210", 6, 240};
+
+  EXPECT_NE(page_of(entries).find("its first 6 trials, repeated at commit ba9876543210, gave the same 240 figures"),
+            std::string::npos);
 }
 
 TEST(Page, SaysWhyARequirementIsNotMetWhereThatIsKnown) {

@@ -99,6 +99,7 @@ Result<Report> joined(const Report& earlier, const Report& later) {
   }
   Report report = later;
   report.runs = earlier.runs;
+  report.repetition = earlier.repetition;
   report.runs.insert(report.runs.end(), later.runs.begin(), later.runs.end());
   report.rows = earlier.rows;
   for (const Row& row : later.rows) {

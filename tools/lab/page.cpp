@@ -17,7 +17,8 @@ constexpr std::string_view kHead = R"(# Results
 This page is generated from `docs/results/*.json` by `cgsr reproduce --page`; edit neither. `cgsr reproduce NAME --resume` measures a table with a
 seed that is drawn (at least 1000; smaller ones are for tuning and tests), and joins its trials to those that were measured with the same
 configuration and sources. Every figure stands with its 95 % interval where trials give one. 'Met' is said of the figure; 'not sure' is added where
-the interval reaches beyond the requirement. Stale: the configuration or the sources of the rooms that the table measures have changed since
+the interval reaches beyond the requirement. Repeated: sources or configuration have changed since in what the table does not measure, which trials that
+were measured again showed (`cgsr reproduce NAME --repeat`). Stale: the configuration or the sources of the rooms that the table measures have changed since
 (`tools/check` lists such tables). What was measured before is in CHANGELOG.md.
 )";
 
@@ -72,6 +73,10 @@ std::string provenance_of(const PageEntry& entry) {
       fmt::format("- `{0}`: {1}; {2}; configuration {3}, sources {4}; all {5} rows: [{0}.json](results/{0}.json)",
                   report.name, report.title, fmt::join(runs, "; "), report.config_sha256.substr(0, kHashDigits),
                   report.sources_sha256.substr(0, kHashDigits), report.rows.size());
+  if (const auto& repetition = report.repetition) {
+    text += fmt::format("; its first {} trials, repeated at commit {}, gave the same {} figures", repetition->trials,
+                        repetition->commit, repetition->figures);
+  }
   if (entry.staleness != Staleness::kFresh) text += fmt::format(" (stale: {})", to_string(entry.staleness));
   text += '\n';
   for (const Row& row : report.rows) {

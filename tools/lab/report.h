@@ -100,6 +100,13 @@ struct Run {
   std::string commit;  ///< of the sources; with "+changes" where they were not committed.
 };
 
+/// Trials of a table's first run that were measured again after something had changed, and gave the same figures.
+struct Repetition {
+  std::string commit;  ///< of the sources then.
+  int trials = 0;
+  int figures = 0;  ///< that were compared.
+};
+
 /// A table or figure, reproduced.
 struct Report {
   std::string name;
@@ -111,9 +118,13 @@ struct Report {
   std::vector<std::string> notes;  ///< what a reader has to know to read the figures rightly; a sentence each
   std::vector<Stripe> stripes = {};
   std::vector<Picture> pictures = {};
-  std::string sources_sha256 = {};  ///< of the rooms that it measures.
-  std::vector<Run> runs = {};       ///< those that its rows are made of.
+  std::string sources_sha256 = {};            ///< of the rooms that it measures.
+  std::vector<Run> runs = {};                 ///< those that its rows are made of.
+  std::optional<Repetition> repetition = {};  ///< the last one; the hashes are of its configuration and sources.
 };
+
+/// \return the value in the digits that a stored report keeps of samples.
+double stored_digits(double value);
 
 /// A figure without an interval.
 Row plain_row(std::string row, std::string quantity, std::string unit, double value, std::size_t trials,
@@ -135,6 +146,7 @@ Row share_row(std::string row, std::string quantity, int successes, int trials);
 std::string to_text(const Report& report);
 
 /// \return [{"name", "title", "config_sha256", "sources_sha256", "seed", "seeds": [], "runs": [{"seed", "trials", "commit"}],
+///         "repetition": {"commit", "trials", "figures"} or null,
 ///         "rows": [{"row", "quantity", "unit", "dissertation", "ours", "interval", "trials", "requirement", "met", "join"}], "notes": []}].
 ///         "requirement" is {"at_most": B}, {"at_least": B} or null; a row that more trials can join has "samples" and "weights" too.
 nlohmann::json to_json(const std::vector<Report>& reports);

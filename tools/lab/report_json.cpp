@@ -22,17 +22,9 @@ constexpr std::array kJoins{
     std::pair(Join::kP95, std::string_view("p95")),           std::pair(Join::kPaired, std::string_view("paired")),
     std::pair(Join::kPairedP, std::string_view("paired p"))};
 
-/// Six digits are more than any figure here is worth.
-double rounded(double value) {
-  const std::string digits = fmt::format("{:.6g}", value);
-  double out = value;
-  std::from_chars(digits.data(), digits.data() + digits.size(), out);
-  return out;
-}
-
 json rounded(const std::vector<double>& values) {
   auto array = json::array();
-  for (const double value : values) array.push_back(rounded(value));
+  for (const double value : values) array.push_back(stored_digits(value));
   return array;
 }
 
@@ -66,6 +58,11 @@ json json_of(const Row& row) {
   return out;
 }
 
+json json_of(const std::optional<Repetition>& repetition) {
+  if (!repetition) return {};
+  return {{"commit", repetition->commit}, {"trials", repetition->trials}, {"figures", repetition->figures}};
+}
+
 json json_without_rows(const Report& report) {
   auto runs = json::array();
   auto seeds = json::array();
@@ -80,6 +77,7 @@ json json_without_rows(const Report& report) {
           {"seed", report.seed},
           {"seeds", seeds},
           {"runs", runs},
+          {"repetition", json_of(report.repetition)},
           {"notes", report.notes}};
 }
 
@@ -124,11 +122,24 @@ Report report_of(const json& in) {
     report.runs.push_back(
         {run.at("seed").get<std::uint64_t>(), run.at("trials").get<int>(), run.at("commit").get<std::string>()});
   }
+  if (in.contains("repetition") && !in.at("repetition").is_null()) {
+    const json& repetition = in.at("repetition");
+    report.repetition = Repetition{repetition.at("commit").get<std::string>(), repetition.at("trials").get<int>(),
+                                   repetition.at("figures").get<int>()};
+  }
   for (const json& row : in.at("rows")) report.rows.push_back(row_of(row));
   return report;
 }
 
 }  // namespace
+
+// Six are more than any figure here is worth.
+double stored_digits(double value) {
+  const std::string digits = fmt::format("{:.6g}", value);
+  double out = value;
+  std::from_chars(digits.data(), digits.data() + digits.size(), out);
+  return out;
+}
 
 std::string_view to_string(Requirement::Kind kind) {
   return word_in(kKinds, kind);

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "tools/lab/experiment.h"
 #include "tools/lab/join.h"
 #include "tools/lab/page.h"
+#include "tools/lab/repeat.h"
 #include "tools/lab/source_path.h"
 #include "tools/lab/store.h"
 
@@ -94,6 +96,26 @@ Result<Report> run_one(const Experiment& experiment, const Setting& setting, con
   return report;
 }
 
+/// Measures trials of a stored table again, and says in the store that they gave the same figures.
+Result<Report> repeat_one(const Experiment& experiment, Setting setting, const Store& store) {
+  const auto stored = store.read(experiment.name);
+  if (!stored) return tl::unexpected(stored.error());
+  if (!*stored) return fail(fmt::format("{}: nothing is stored that could be repeated", experiment.name));
+  const Run& first = (*stored)->runs.front();
+  setting.seed = first.seed;
+  setting.trials = std::min(first.trials, setting.trials > 0 ? setting.trials : (first.trials + 9) / 10);
+  setting.count = false;
+  const auto again = measure(experiment, setting);
+  setting.progress("");
+  if (!again) return again;
+  auto report = repeated(**stored, *again);
+  if (!report) return report;
+  if (const auto written = store.write(*report); !written) return tl::unexpected(written.error());
+  fmt::print(stderr, "{}: {} trials gave the same {} figures\n", report->name, report->repetition->trials,
+             report->repetition->figures);
+  return report;
+}
+
 Result<void> measure_all(const ReproduceOptions& options) {
   app::OutputClaims files(options.force);
   files.reads(options.config, "--config");
@@ -112,7 +134,8 @@ Result<void> measure_all(const ReproduceOptions& options) {
   }
   std::vector<Report> reports;
   for (const Experiment* experiment : *wanted) {
-    auto report = run_one(*experiment, *setting, options);
+    auto report =
+        options.repeat ? repeat_one(*experiment, *setting, store_of(options)) : run_one(*experiment, *setting, options);
     if (!report) return tl::unexpected(report.error());
     fmt::print("{}\n", to_text(*report));
     std::fflush(stdout);
@@ -162,6 +185,13 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_flag("--store", options.store, "replace the published results of these tables (docs/results)");
   app.add_flag("--resume", options.resume,
                "the same, joining these trials to published ones of equal configuration and sources");
+  app.add_flag("--repeat", options.repeat,
+               "measure the first trials of the published results again (a tenth, or --trials), without cost; where "
+               "all give the same figures, what is "
+               "published counts as measured with this configuration and these sources")
+      ->excludes("--store")
+      ->excludes("--resume")
+      ->excludes("--seed");
   app.add_flag("--page", options.page, "write docs/results.md out of the published results; measures nothing");
   app.add_flag(
       "--check-page", options.check_page,

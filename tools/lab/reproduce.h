@@ -25,6 +25,7 @@ struct ReproduceOptions {
   bool all = false;
   bool store = false;
   bool resume = false;
+  bool repeat = false;
   bool page = false;
   bool check_page = false;
   bool force = false;
