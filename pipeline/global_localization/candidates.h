@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -17,14 +18,22 @@
 
 namespace cgsr::global_localization {
 
+/// What the localizer made of an image of the turn.
+struct CorrectedView {
+  int matches = 0;           ///< by which it corrected the pose; 0: it did not.
+  localization::Prior pose;  ///< of the camera, as corrected.
+};
+
 /// A place that may be the robot's.
 struct Candidate {
   geometry::Pose X_WR =
       geometry::Pose::Identity();  ///< where the robot was in the first image; tried: by the localizer.
   float likeness = 0.0F;           ///< of the panoramas, at most 1.
   bool tried = false;
-  int corrected = 0;           ///< images of the turn that corrected it.
-  localization::Prior last{};  ///< tried: the camera's pose in the last of these images.
+  int looked_at = 0;                          ///< images of the turn that the localizer was shown.
+  int corrected = 0;                          ///< of these, the ones that corrected it.
+  std::array<CorrectedView, kViews> views{};  ///< what came of each image.
+  std::size_t last_view = 0;                  ///< the one that was looked at last.
 };
 
 /// \return whether two poses on the floor are that near to each other.

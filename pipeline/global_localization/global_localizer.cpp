@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -13,7 +14,8 @@ namespace {
 using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::size_t kFirstKeyframes = 4;  // of which the trial begins with the richest
+
+constexpr std::size_t kLeastLooks = 6;
 
 // Between two images of the turn the heading is known better than by the odometry alone, and the place less well: no base pivots on a point.
 localization::PoseTrackerParameters for_turn(localization::PoseTrackerParameters tracking,
@@ -21,11 +23,6 @@ localization::PoseTrackerParameters for_turn(localization::PoseTrackerParameters
   tracking.slip_turn = std::min(tracking.slip_turn, parameters.slip_turn);
   tracking.drift_m = std::max(tracking.drift_m, parameters.drift_m);
   return tracking;
-}
-
-bool is_sure(const geometry::Matrix6d& covariance, const GlobalLocalizerParameters& parameters) {
-  return std::sqrt(covariance.topLeftCorner<2, 2>().trace()) <= parameters.max_sigma_m &&
-         std::sqrt(covariance(5, 5)) <= parameters.max_sigma_deg * kDegree;
 }
 
 }  // namespace
@@ -58,7 +55,7 @@ GlobalLocalizer::GlobalLocalizer(const world::Map& map, const geometry::Camera& 
       parameters_(parameters),
       localizer_(&localizer),
       tracker_(localizer, X_RC, for_turn(tracking, parameters)),
-      live_(localizer, X_RC, tracking),
+      settling_(localizer, X_RC, tracking, parameters),
       turn_(camera, X_RC, parameters.max_drift_m),
       index_(map, localization::working_camera(camera).without_distortion(), X_RC, std::move(places_m)),
       search_(index_, parameters) {}
@@ -71,12 +68,13 @@ void GlobalLocalizer::restart() {
   search_.restart();
   trial_ = 0;
   under_trial_ = false;
-  settling_images_ = 0;
+  looking_ = false;
   localizer_->restart();
 }
 
 Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, WorkBudget& budget,
                               const std::uint8_t* mask) {
+  if (phase_ != Phase::kTurning) turn_.follow(motion);
   if (phase_ == Phase::kTurning) {
     const bool looked = turn_.looks_at(motion);
     if (turn_.see(image, motion, mask)) {
@@ -91,11 +89,14 @@ Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, Work
       turn_.gather(seen_);
     } else if (index_.build(budget) && search_.go_on(seen_, budget)) {
       phase_ = search_.candidates().empty() ? Phase::kNotFound : Phase::kTrying;
+      choose_order();
     }
   } else if (phase_ == Phase::kTrying) {
     if (try_candidates(budget, mask)) phase_ = verdict();
   } else if (phase_ == Phase::kSettling) {
-    settle(image, motion, budget, mask);
+    const Settling::Answer answer = settling_.update(turn_, image, motion, budget, mask);
+    if (answer == Settling::Answer::kConfirmed) phase_ = Phase::kFound;
+    if (answer == Settling::Answer::kRefused) phase_ = Phase::kNotFound;
   }
   return phase_;
 }
@@ -111,53 +112,81 @@ bool GlobalLocalizer::worth_trying(const Candidate& candidate) const {
                      parameters_.min_likeness_share * static_cast<double>(search_.candidates().front().likeness);
 }
 
-void GlobalLocalizer::begin_trial(const Candidate& candidate) {
-  const auto richer = [](const Keyframe& a, const Keyframe& b) { return a.edges_px < b.edges_px; };
-  const auto first = turn_.keyframes().first(kFirstKeyframes);
-  const auto richest = std::ranges::max_element(first, richer);
-  next_keyframe_ = static_cast<std::size_t>(richest - first.begin());
-  localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
-  sigmas.x_m = sigmas.y_m = parameters_.place_sigma_m;
-  sigmas.heading_rad = parameters_.heading_sigma_deg * kDegree;
-  const Pose X_R0R = turn_.X_FR(*richest);
-  tracker_.start(localization::prior_at(candidate.X_WR * X_R0R * X_RC_, sigmas));
-  failed_ = 0;
-  under_trial_ = true;
-  looking_ = false;
+// From the image that shows most around to the last one, the shorter way, and on; the last one stands for the one that it looks like. A look at a bare wall
+// takes longest and says least: those are left out.
+void GlobalLocalizer::choose_order() {
+  const std::size_t closing = turn_.closing_view();
+  const auto keyframe_at = [closing](std::size_t view) { return view == closing ? kKeyframes : view; };
+  std::array<float, kKeyframes> edges_px{};
+  for (std::size_t view = 0; view < kKeyframes; ++view) edges_px[view] = turn_.keyframes()[keyframe_at(view)].edges_px;
+  const auto richest = static_cast<std::size_t>(std::ranges::max_element(edges_px) - edges_px.begin());
+  auto sorted = edges_px;
+  std::ranges::sort(sorted, std::greater<>());
+  const float enough_px =
+      std::min(static_cast<float>(parameters_.min_edges_share) * sorted.front(), sorted[kLeastLooks - 1]);
+  const std::size_t forward = (closing + kKeyframes - richest) % kKeyframes;
+  const std::size_t step = 2 * forward <= kKeyframes ? 1 : kKeyframes - 1;
+  looks_ = 0;
+  for (std::size_t i = 0; i < kKeyframes; ++i) {
+    const std::size_t view = (richest + i * step) % kKeyframes;
+    if (edges_px[view] < enough_px && view != closing) continue;
+    order_[static_cast<std::size_t>(looks_++)] = keyframe_at(view);
+    if (view == closing) looks_to_last_ = looks_;
+  }
+}
+
+bool GlobalLocalizer::goes_on(const Candidate& candidate) const {
+  if (candidate.looked_at >= looks_) return false;
+  if (candidate.corrected == 0) return candidate.looked_at < parameters_.max_failed;
+  return candidate.corrected < parameters_.enough_corrected || candidate.looked_at < looks_to_last_;
 }
 
 void GlobalLocalizer::end_trial(Candidate& candidate) {
   candidate.tried = true;
-  candidate.last = {.X_WC = tracker_.now().X_WC, .covariance = tracker_.now().covariance};
-  const Pose X_R0R = turn_.X_FR(turn_.keyframes().back());
-  if (candidate.corrected > 0) candidate.X_WR = candidate.last.X_WC * X_RC_.inverse() * X_R0R.inverse();
+  const Pose X_R0R = turn_.X_FR(turn_.keyframes()[candidate.last_view]);
+  if (candidate.corrected > 0) candidate.X_WR = tracker_.now().X_WC * X_RC_.inverse() * X_R0R.inverse();
   under_trial_ = false;
+  localizer_->restart();
   ++trial_;
+}
+
+// Until an image corrects it, a candidate is no better known than the comparison of panoramas knows it.
+void GlobalLocalizer::begin_look(const Candidate& candidate) {
+  const Keyframe& keyframe = turn_.keyframes()[order_[static_cast<std::size_t>(candidate.looked_at)]];
+  if (candidate.corrected > 0) {
+    tracker_.moved(turn_.X_FR(turn_.keyframes()[candidate.last_view]).inverse() * turn_.X_FR(keyframe));
+  } else {
+    localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
+    sigmas.x_m = sigmas.y_m = parameters_.place_sigma_m;
+    sigmas.heading_rad = parameters_.heading_sigma_deg * kDegree;
+    tracker_.start(localization::prior_at(candidate.X_WR * turn_.X_FR(keyframe) * X_RC_, sigmas));
+  }
+  tracker_.pitched(keyframe.motion.pitch_rad, keyframe.motion.axle_height_m);
+  looking_ = true;
+}
+
+// Each look takes as many images as the localizer searches.
+void GlobalLocalizer::look_at_next(Candidate& candidate, WorkBudget& budget, const std::uint8_t* mask) {
+  if (!looking_) begin_look(candidate);
+  const std::size_t view = order_[static_cast<std::size_t>(candidate.looked_at)];
+  const localization::Correction& correction = tracker_.see(turn_.keyframes()[view].image, budget, mask).correction;
+  if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return;
+  looking_ = false;
+  candidate.last_view = view;
+  ++candidate.looked_at;
+  if (correction.corrected) {
+    ++candidate.corrected;
+    candidate.views[view] = {correction.matches, {tracker_.now().X_WC, tracker_.now().covariance}};
+  }
 }
 
 bool GlobalLocalizer::try_candidates(WorkBudget& budget, const std::uint8_t* mask) {
   while (trial_ < search_.candidates().size()) {
     Candidate& candidate = search_.candidates()[trial_];
-    if (!under_trial_) {
-      if (!worth_trying(candidate)) return true;
-      begin_trial(candidate);
-    }
-    while (next_keyframe_ < turn_.keyframes().size() && (candidate.corrected > 0 || failed_ < parameters_.max_failed)) {
-      const Keyframe& keyframe = turn_.keyframes()[next_keyframe_];
-      if (!looking_) {
-        tracker_.pitched(keyframe.motion.pitch_rad, keyframe.motion.axle_height_m);
-        looking_ = true;
-      }
-      const localization::TrackedPose& pose = tracker_.see(keyframe.image, budget, mask);
-      if (localizer_->searching() || pose.correction.reason == localization::Reason::kNoBudget) return false;
-      looking_ = false;
-      candidate.corrected += pose.correction.corrected ? 1 : 0;
-      failed_ += pose.correction.corrected ? 0 : 1;
-      ++next_keyframe_;
-      if (next_keyframe_ < turn_.keyframes().size()) {
-        const Keyframe& next = turn_.keyframes()[next_keyframe_];
-        tracker_.moved(turn_.X_FR(keyframe).inverse() * turn_.X_FR(next));
-      }
+    if (!under_trial_ && !worth_trying(candidate)) return true;
+    under_trial_ = true;
+    if (goes_on(candidate)) {
+      look_at_next(candidate, budget, mask);
       return false;  // edges are perceived once an image
     }
     end_trial(candidate);
@@ -166,40 +195,21 @@ bool GlobalLocalizer::try_candidates(WorkBudget& budget, const std::uint8_t* mas
 }
 
 Phase GlobalLocalizer::verdict() {
+  const auto share = [](const Candidate& c) { return static_cast<double>(c.corrected) / std::max(1, c.looked_at); };
+  const auto better = [&share](const Candidate& a, const Candidate& b) {
+    return a.corrected != b.corrected ? a.corrected > b.corrected : share(a) > share(b);
+  };
   const Candidate* best = nullptr;
   for (const Candidate& c : search_.candidates()) {
-    if (c.tried && (best == nullptr || c.corrected > best->corrected)) best = &c;
+    if (c.tried && (best == nullptr || better(c, *best))) best = &c;
   }
   if (best == nullptr || best->corrected < parameters_.min_corrected) return Phase::kNotFound;
   for (const Candidate& c : search_.candidates()) {
     if (!c.tried || are_near(c.X_WR, best->X_WR, parameters_.same_m, parameters_.same_deg * kDegree)) continue;
-    if (c.corrected > parameters_.max_rival_share * best->corrected) return Phase::kAmbiguous;
+    if (share(c) > parameters_.max_rival_share * share(*best)) return Phase::kAmbiguous;
   }
-  begin_settling(*best);
+  settling_.begin(*best);
   return Phase::kSettling;
-}
-
-void GlobalLocalizer::begin_settling(const Candidate& candidate) {
-  live_.start(candidate.last);
-  X_LR_before_ = Pose::Identity();
-  settling_images_ = 0;
-}
-
-void GlobalLocalizer::settle(const ImageView& image, const Motion& motion, WorkBudget& budget,
-                             const std::uint8_t* mask) {
-  const Pose X_LR = turn_.X_LR(motion);
-  live_.moved(X_LR_before_.inverse() * X_LR);
-  X_LR_before_ = X_LR;
-  live_.pitched(motion.pitch_rad, motion.axle_height_m);
-  live_.see(image, budget, mask);
-  if (live_.now().correction.corrected && is_sure(live_.now().covariance, parameters_)) {
-    phase_ = Phase::kFound;
-    settling_images_ = 0;
-  } else if (live_.now().correction.reason != localization::Reason::kSearching &&
-             ++settling_images_ >= parameters_.max_settling_images) {
-    phase_ = Phase::kNotFound;
-    settling_images_ = 0;
-  }
 }
 
 }  // namespace cgsr::global_localization

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,7 +13,9 @@
 #include "pipeline/global_localization/candidates.h"
 #include "pipeline/global_localization/panorama.h"
 #include "pipeline/global_localization/parameters.h"
+#include "pipeline/global_localization/phase.h"
 #include "pipeline/global_localization/place_index.h"
+#include "pipeline/global_localization/settling.h"
 #include "pipeline/global_localization/turn.h"
 #include "pipeline/localization/localizer.h"
 #include "pipeline/localization/pose_tracker.h"
@@ -22,20 +24,6 @@
 #include "platform/work_budget.h"
 
 namespace cgsr::global_localization {
-
-/// How far the search for the first pose has come.
-enum class Phase : std::uint8_t {
-  kTurning,    ///< the robot should turn on the spot; images of all around are collected.
-  kComparing,  ///< from here on it should stand: they are compared with the map from everywhere.
-  kTrying,     ///< the localizer tries the most alike places.
-  kSettling,   ///< the best one is corrected by the images that come now.
-  kFound,
-  kAmbiguous,  ///< more than one place explains the images.
-  kNotFound,   ///< none does.
-};
-
-/// \return lower_case word.
-std::string_view to_string(Phase phase);
 
 /// The pose of a robot that was put down anywhere in its map, without a marker or a last run. While it turns on the spot once, twelve images make a
 /// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are handed to the
@@ -64,43 +52,43 @@ class GlobalLocalizer {
   void restart();
 
   [[nodiscard]] Phase phase() const { return phase_; }
-  /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned once and up to a sixth more it should stand; but
-  /// where it then looks at a bare wall it turns on, until an image confirms the pose.
-  [[nodiscard]] bool wants_turn() const { return phase_ == Phase::kTurning || settling_images_ > 0; }
+  /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned once and up to a sixth more it should
+  /// stand; then it turns on to a view that confirms the pose, and stands again.
+  [[nodiscard]] bool wants_turn() const {
+    return phase_ == Phase::kTurning || (phase_ == Phase::kSettling && settling_.wants_turn());
+  }
   /// The camera's pose at the last image; with kFound.
-  [[nodiscard]] const localization::TrackedPose& found() const { return live_.now(); }
+  [[nodiscard]] const localization::TrackedPose& found() const { return settling_.now(); }
   /// The most alike first; from kTrying on.
   [[nodiscard]] std::span<const Candidate> candidates() const { return search_.candidates(); }
 
  private:
   bool try_candidates(WorkBudget& budget, const std::uint8_t* mask);
   [[nodiscard]] bool worth_trying(const Candidate& candidate) const;
-  void begin_trial(const Candidate& candidate);
+  void choose_order();
+  void begin_look(const Candidate& candidate);
+  [[nodiscard]] bool goes_on(const Candidate& candidate) const;
+  void look_at_next(Candidate& candidate, WorkBudget& budget, const std::uint8_t* mask);
   void end_trial(Candidate& candidate);
   [[nodiscard]] Phase verdict();
-  void begin_settling(const Candidate& candidate);
-  void settle(const ImageView& image, const Motion& motion, WorkBudget& budget, const std::uint8_t* mask);
-
   geometry::Pose X_RC_;
   GlobalLocalizerParameters parameters_;
   localization::Localizer* localizer_;
   localization::PoseTracker tracker_;  ///< of a candidate, over the images of the turn.
-  localization::PoseTracker live_;     ///< of the best one, over the images that come after it.
+  Settling settling_;                  ///< of the best one, over the images that come after it.
   Turn turn_;
   PlaceIndex index_;
   CandidateSearch search_;
   Phase phase_ = Phase::kTurning;
   Panorama seen_;
-  bool closed_ = false;            ///< the turn is.
-  bool gathered_ = false;          ///< seen_ is.
-  std::size_t trial_ = 0;          ///< candidate under trial.
-  std::size_t next_keyframe_ = 0;  ///< that it sees.
-  int failed_ = 0;                 ///< images that did not correct it.
+  bool closed_ = false;                          ///< the turn is.
+  bool gathered_ = false;                        ///< seen_ is.
+  std::size_t trial_ = 0;                        ///< candidate under trial.
+  std::array<std::size_t, kKeyframes> order_{};  ///< of the images of the turn in every trial.
+  int looks_ = 0;                                ///< at most; so many of order_ are used.
+  int looks_to_last_ = 0;                        ///< until the last image of the turn is among them.
   bool under_trial_ = false;
-  bool looking_ = false;  ///< at next_keyframe_, since an earlier image.
-  geometry::Pose X_LR_before_ =
-      geometry::Pose::Identity();  ///< since the turn's last image, at the image before this one.
-  int settling_images_ = 0;        ///< that did not confirm the pose.
+  bool looking_ = false;  ///< at an image of the turn, since an earlier update.
 };
 
 }  // namespace cgsr::global_localization

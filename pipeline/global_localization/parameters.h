@@ -4,6 +4,8 @@ namespace cgsr::global_localization {
 
 /// Images of a turn stand for so much to either side of where they look: twelve of them see all around.
 inline constexpr int kKeyframes = 12;
+/// With the one that closes the turn.
+inline constexpr int kViews = kKeyframes + 1;
 
 struct GlobalLocalizerParameters {
   double spacing_m = 0.4;    ///< of the grid of places that are compared.
@@ -13,17 +15,22 @@ struct GlobalLocalizerParameters {
   double same_deg = 10.0;          ///< candidates that differ by no more, and are neighbours on the grid, are one.
   double place_sigma_m = 0.08;     ///< of a candidate's place along x and y, from which the localizer tries it.
   double heading_sigma_deg = 2.5;  ///< of its heading.
-  double slip_turn = 0.01;         ///< of the odometry's turns between these images, once the whole turn is known.
+  double slip_turn = 0.02;         ///< of the odometry's turns between these images, once the whole turn is known.
   double drift_m = 0.01;           ///< of the place between two of them, which the odometry of a turn does not tell.
+  double turn_sigma_m = 0.03;      ///< the same of a whole turn, when an earlier view of it is seen again.
+  double turn_sigma_deg = 1.5;     ///< of the heading then, the turn being closed.
   double min_likeness_share =
-      0.85;                      ///< of the best candidate's: others are tried too, although the best one was right.
-  int min_corrected = 4;         ///< images of the turn in which the localizer must correct a candidate's pose.
-  double max_rival_share = 0.5;  ///< of these, in how many another place may be corrected as well.
+      0.85;                  ///< of the best candidate's: others are tried too, although the best one was right.
+  int min_corrected = 4;     ///< images of the turn in which the localizer must correct a candidate's pose.
+  int enough_corrected = 5;  ///< with so many the trial ends, once the last image was among those that were looked at.
+  /// Of the edges in the richest image of the turn; poorer images are left out, but six are looked at.
+  double min_edges_share = 0.4;
+  double max_rival_share = 0.5;  ///< of the best one's share of corrected images, what another place may have.
   double same_m = 0.3;           ///< tried candidates that come this near to each other are one place.
-  int max_failed = 6;            ///< a candidate is given up when none of so many images corrected it.
+  int max_failed = 4;            ///< a candidate is given up when none of so many images corrected it.
   double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,
   double max_sigma_deg = 0.5;   ///< ... and its heading to a third of 1.5 degrees.
-  int max_settling_images = 250;  ///< after which no image confirmed the pose: most of a turn.
+  int max_settling_images = 300;  ///< after which no image confirmed the pose: a turn with some looks.
 };
 
 }  // namespace cgsr::global_localization

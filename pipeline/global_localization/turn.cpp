@@ -211,10 +211,10 @@ Pose Turn::X_FR(const Motion& motion, double turned_rad) const {
   return X_FR * leaning(motion);
 }
 
-Pose Turn::X_LR(const Motion& motion) const {
-  const Keyframe& last = keyframes_.back();
-  const double turned_rad = last.turned_rad + share_ * turn_between(last.motion.X_OR, motion.X_OR);
-  return X_FR(last).inverse() * X_FR(motion, turned_rad);
+void Turn::follow(const Motion& motion) {
+  turned_rad_ += turn_between(X_OR_before_, motion.X_OR);
+  X_OR_before_ = motion.X_OR;
+  now_ = motion;
 }
 
 }  // namespace cgsr::global_localization

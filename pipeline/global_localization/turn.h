@@ -60,12 +60,17 @@ class Turn {
   void gather(Panorama& panorama) const;
 
   [[nodiscard]] std::span<const Keyframe> keyframes() const { return keyframes_; }
-  /// The robot in the level frame below it at the first image: how it moved since and leans, with its heading as the closed turn has it.
+  /// The image of the beginning that the last one looks like.
+  [[nodiscard]] std::size_t closing_view() const { return closed_; }
+  /// The robot in the level frame below it at the first image, now and at an image of the turn: how it moved since and leans, with its heading as the closed turn has it.
   [[nodiscard]] geometry::Pose X_FR(const Keyframe& keyframe) const {
     return X_FR(keyframe.motion, keyframe.turned_rad);
   }
-  /// How the robot moved since the last image of the turn, its odometry corrected as that of the turn was.
-  [[nodiscard]] geometry::Pose X_LR(const Motion& motion) const;
+  /// Goes on to say where the robot is, once the turn is whole.
+  void follow(const Motion& motion);
+  /// How far the robot has turned since the first image, to the left; its odometry corrected as that of the turn was.
+  [[nodiscard]] double turned_rad() const { return share_ * turned_rad_; }
+  [[nodiscard]] geometry::Pose X_FR() const { return X_FR(now_, turned_rad()); }
 
  private:
   [[nodiscard]] geometry::Pose X_FR(const Motion& motion, double turned_rad) const;
@@ -83,8 +88,9 @@ class Turn {
   std::vector<localization::ProjectedPiece> turned_;  ///< edges of another one in it.
   std::array<Keyframe, kKeyframes + 1> keyframes_;
   int taken_ = 0;
-  std::size_t closed_ = 0;  ///< the image that the last one closes the turn with.
-  double turned_rad_ = 0.0;
+  std::size_t closed_ = 0;   ///< the image that the last one closes the turn with.
+  double turned_rad_ = 0.0;  ///< as the odometry says.
+  Motion now_;
   double share_ = 1.0;  ///< of what the odometry says it turned.
   geometry::Pose X_OR_before_ = geometry::Pose::Identity();
 };

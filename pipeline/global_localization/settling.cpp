@@ -1,0 +1,111 @@
+#include "pipeline/global_localization/settling.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cgsr::global_localization {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kFaced = 15.0 * kDegree;    // from where a view was looked at
+constexpr double kStanding = 0.5 * kDegree;  // turned between two images, or less
+constexpr int kMaxBrakingImages = 15;        // after which it is looked at from a robot that turns
+constexpr int kMaxUnsureImages = 15;
+constexpr double kGoodView = 0.5;      // of the most matches of all views
+constexpr double kManyMatches = 12.0;  // are good in any case
+
+double square(double value) {
+  return value * value;
+}
+
+double wrapped(double angle_rad) {
+  return std::remainder(angle_rad, 2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+Settling::Settling(localization::Localizer& localizer, const geometry::Pose& X_RC,
+                   const localization::PoseTrackerParameters& tracking, const GlobalLocalizerParameters& parameters)
+    : localizer_(&localizer), tracker_(localizer, X_RC, tracking), parameters_(parameters) {}
+
+void Settling::begin(const Candidate& candidate) {
+  views_ = candidate.views;
+  const int most = std::ranges::max_element(views_, {}, &CorrectedView::matches)->matches;
+  for (CorrectedView& view : views_) {
+    if (view.matches < std::min(kGoodView * most, kManyMatches)) view.matches = 0;
+  }
+  view_ = std::nullopt;
+  wants_turn_ = false;
+  images_ = 0;
+}
+
+std::optional<std::size_t> Settling::faced_view(const Turn& turn, double turned_rad) const {
+  for (std::size_t i = views_.size(); i-- > 0;) {
+    if (views_[i].matches > 0 && std::abs(wrapped(turn.keyframes()[i].turned_rad - turned_rad)) <= kFaced) return i;
+  }
+  return std::nullopt;
+}
+
+// From where it was looked at in the turn, and what the odometry of a turn leaves; of the last view, the little way from there.
+void Settling::face(std::size_t view, const Turn& turn) {
+  view_ = view;
+  looking_ = false;
+  braking_images_ = 0;
+  localization::Prior prior = views_[view].pose;
+  if (view + 1 < views_.size()) {
+    prior.covariance.topLeftCorner<2, 2>().diagonal().array() += square(parameters_.turn_sigma_m);
+    prior.covariance(5, 5) += square(parameters_.turn_sigma_deg * kDegree);
+  }
+  tracker_.start(prior);
+  X_FR_before_ = turn.X_FR(turn.keyframes()[view]);
+}
+
+bool Settling::begins_to_look(double turned_rad) {
+  const bool stands = std::abs(wrapped(turned_rad - turned_before_rad_)) <= kStanding;
+  if (!stands && ++braking_images_ < kMaxBrakingImages) return false;
+  localizer_->restart();
+  unsure_images_ = 0;
+  return true;
+}
+
+bool Settling::is_sure() const {
+  const geometry::Matrix6d& covariance = now().covariance;
+  return std::sqrt(covariance.topLeftCorner<2, 2>().trace()) <= parameters_.max_sigma_m &&
+         std::sqrt(covariance(5, 5)) <= parameters_.max_sigma_deg * kDegree;
+}
+
+Settling::Answer Settling::update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
+                                  const std::uint8_t* mask) {
+  if (++images_ > parameters_.max_settling_images) return Answer::kRefused;
+  const double turned_rad = turn.turned_rad();
+  if (!view_) {
+    if (const auto view = faced_view(turn, turned_rad)) face(*view, turn);
+  }
+  wants_turn_ = !view_;
+  if (view_ && !looking_) looking_ = begins_to_look(turned_rad);
+  turned_before_rad_ = turned_rad;
+  if (!view_) return Answer::kGoesOn;
+  const geometry::Pose X_FR = turn.X_FR();
+  tracker_.moved(X_FR_before_.inverse() * X_FR);
+  tracker_.pitched(motion.pitch_rad, motion.axle_height_m);
+  X_FR_before_ = X_FR;
+  if (!looking_) return Answer::kGoesOn;
+  tracker_.see(image, budget, mask);
+  return judge();
+}
+
+Settling::Answer Settling::judge() {
+  const localization::Correction& correction = now().correction;
+  if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return Answer::kGoesOn;
+  if (correction.corrected && is_sure()) return Answer::kConfirmed;
+  if (correction.corrected && ++unsure_images_ < kMaxUnsureImages) return Answer::kGoesOn;
+  views_[*view_].matches = 0;
+  view_ = std::nullopt;
+  looking_ = false;
+  wants_turn_ = true;
+  const bool any = std::ranges::any_of(views_, [](const CorrectedView& view) { return view.matches > 0; });
+  return any ? Answer::kGoesOn : Answer::kRefused;
+}
+
+}  // namespace cgsr::global_localization

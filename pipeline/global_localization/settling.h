@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "pipeline/geometry/pose.h"
+#include "pipeline/global_localization/candidates.h"
+#include "pipeline/global_localization/parameters.h"
+#include "pipeline/global_localization/turn.h"
+#include "pipeline/localization/localizer.h"
+#include "pipeline/localization/pose_tracker.h"
+#include "platform/image_view.h"
+#include "platform/work_budget.h"
+
+namespace cgsr::global_localization {
+
+/// Confirms a candidate's pose by the image of now. The robot turns on until it faces a view of the turn in which the localizer found much of the map during
+/// the trial, and stands while that is looked at again, from the pose that was found then: one that turns sees another view before a search has ended. Mostly
+/// it faces one already, the last of the turn.
+///
+/// Allocates nothing.
+class Settling {
+ public:
+  enum class Answer : std::uint8_t { kGoesOn, kConfirmed, kRefused };
+
+  /// \param localizer  outlives it.
+  Settling(localization::Localizer& localizer, const geometry::Pose& X_RC,
+           const localization::PoseTrackerParameters& tracking, const GlobalLocalizerParameters& parameters);
+
+  /// \param candidate  that was tried.
+  void begin(const Candidate& candidate);
+
+  /// \param turn  whole, with the images in which the candidate was tried; it has followed the motion to this image.
+  Answer update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
+                const std::uint8_t* mask);
+
+  [[nodiscard]] bool wants_turn() const { return wants_turn_; }
+  /// The camera at the last image.
+  [[nodiscard]] const localization::TrackedPose& now() const { return tracker_.now(); }
+
+ private:
+  [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn, double turned_rad) const;
+  void face(std::size_t view, const Turn& turn);
+  [[nodiscard]] bool begins_to_look(double turned_rad);
+  [[nodiscard]] Answer judge();
+  [[nodiscard]] bool is_sure() const;
+
+  localization::Localizer* localizer_;
+  localization::PoseTracker tracker_;
+  GlobalLocalizerParameters parameters_;
+  std::array<CorrectedView, kViews> views_{};  ///< of the turn; without matches where they are not worth a look.
+  std::optional<std::size_t> view_;            ///< that the robot faces; nothing: it turns on.
+  bool wants_turn_ = false;
+  bool looking_ = false;
+  int braking_images_ = 0;
+  int unsure_images_ = 0;  ///< of this look, that corrected the pose and left it too uncertain.
+  int images_ = 0;
+  double turned_before_rad_ = 0.0;
+  geometry::Pose X_FR_before_ = geometry::Pose::Identity();  ///< since the turn's first image, at the image before.
+};
+
+}  // namespace cgsr::global_localization
