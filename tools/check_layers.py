@@ -37,7 +37,7 @@ ALLOWED = {
     "pipeline/person": ["platform", "pipeline/geometry", "pipeline/imaging", *COLOR],
     "pipeline/behavior": ["platform", "pipeline/geometry", "pipeline/world", *CHAPTERS],
     "pipeline/stages": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/geometry", "pipeline/imaging", "pipeline/world",
-                        "pipeline/render", "pipeline/behavior", *CHAPTERS],
+                        "pipeline/render", "pipeline/behavior", "pipeline/global_localization", *CHAPTERS],
     "pipeline/motion": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/behavior"],
     "pipeline/calibration": ["platform", "pipeline/geometry", "pipeline/illumination", "pipeline/stages"],
     "pipeline/mapping": ["platform", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/localization"],

@@ -42,6 +42,11 @@ Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camer
     boot.message = fmt::format("marker {}", start.marker.id);
     return boot;
   }
+  if (start.anywhere) {
+    boot.anywhere = true;
+    boot.message = "its first turn on the spot";
+    return boot;
+  }
   const geometry::Pose X_WR = geometry::pose_on_floor(start.x_m, start.y_m, start.heading_deg * kDegree);
   boot.prior = prior_on_floor(X_WR * X_RC, start.sigma_m, start.sigma_deg * kDegree);
   boot.message = "the robot's file";

@@ -14,7 +14,8 @@ namespace cgsr::boot {
 /// the file in which the last run left its pose, a marker of known place in the first image, the robot's configuration.
 struct BootPose {
   localization::Prior prior;
-  std::string message;  ///< where it comes from, for people.
+  bool anywhere = false;  ///< `prior` says nothing: the robot is to seek its first pose.
+  std::string message;    ///< where it comes from, for people.
 };
 
 /// \param first_image  YUYV; empty: no marker is looked for.  \param camera  of that image's size.

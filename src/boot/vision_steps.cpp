@@ -7,6 +7,7 @@
 #include "pipeline/color/learn/learn.h"
 #include "pipeline/color/learn/model_file.h"
 #include "pipeline/localization/perceive.h"
+#include "pipeline/localization/work.h"
 #include "pipeline/stages/color_stages.h"
 #include "pipeline/stages/finals_task.h"
 #include "pipeline/stages/search_people_task.h"
@@ -17,6 +18,7 @@
 #include "src/boot/robot_plan.h"
 #include "src/input/camera_file.h"
 #include "src/input/robot_calibration.h"
+#include "src/input/start_places.h"
 #include "src/plug_in/expectation.h"
 
 namespace cgsr::boot {
@@ -254,6 +256,18 @@ Result<void> make_localization(RobotState& state) {
   setup.localizer = known.localizer;
   setup.tracking = known.tracker;
   setup.start = boot->prior;
+  if (boot->anywhere) {
+    const int units = state.setup.config.stage.of<stages::LocalizeStage>().units;
+    if (units < localization::kMinSearchUnits) {
+      return fail(fmt::format("stage.localize.units = {}: localization.start.anywhere needs at least {}", units,
+                              localization::kMinSearchUnits));
+    }
+    auto places = app::start_places(*state.vision.map, known.map);
+    if (!places) return tl::unexpected(places.error());
+    setup.start_places_m = std::move(*places);
+    setup.first_turn_radps = known.start.turn_radps;
+    state.report.notes.push_back(fmt::format("seeks its first pose among {} places", setup.start_places_m.size()));
+  }
   if (calibration.board) {
     setup.self_mask = stages::self_mask(*calibration.board, localization::working_camera(*calibration.camera),
                                         calibration.X_RC, kSelfMaskMargin_px);

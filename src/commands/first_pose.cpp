@@ -6,37 +6,18 @@
 
 #include <fmt/format.h>
 
-#include "pipeline/behavior/free_floor.h"
+#include "src/input/start_places.h"
 
 namespace cgsr::app {
-namespace {
-
-constexpr double kMostFloor_m2 = 2000.0;  // half a gigabyte of panoramas
-
-}  // namespace
-
 using global_localization::Candidate;
-using global_localization::GlobalLocalizerParameters;
 using global_localization::Phase;
 
 Result<std::unique_ptr<FirstPose>> FirstPose::make(const world::Map& map, const std::string& map_file,
                                                    const geometry::Camera& camera, const geometry::Pose& X_RC,
                                                    const config::Localization& config) {
-  const GlobalLocalizerParameters parameters;
-  const behavior::FreeFloor floor(map, {.min_clearance_m = parameters.clearance_m});
-  if (floor.width_m() * floor.depth_m() > kMostFloor_m2) {
-    return fail(fmt::format(
-        "{}: covers {:.0f} x {:.0f} m: --anywhere searches at most {:.0f} square metres; is the map in metres "
-        "(--scale)?",
-        map_file, floor.width_m(), floor.depth_m(), kMostFloor_m2));
-  }
-  auto places = global_localization::grid_of_places(map, parameters.spacing_m,
-                                                    [&](double x_m, double y_m) { return floor.is_free(x_m, y_m); });
-  if (places.empty()) {
-    return fail(fmt::format("{}: --anywhere needs a map with free floor: no place in it is {} m from everything",
-                            map_file, parameters.clearance_m));
-  }
-  return std::unique_ptr<FirstPose>(new FirstPose(map, camera, X_RC, config, std::move(places)));
+  auto places = start_places(map, map_file);
+  if (!places) return tl::unexpected(places.error());
+  return std::unique_ptr<FirstPose>(new FirstPose(map, camera, X_RC, config, std::move(*places)));
 }
 
 FirstPose::FirstPose(const world::Map& map, const geometry::Camera& camera, const geometry::Pose& X_RC,

@@ -181,6 +181,13 @@ struct Robot {
     if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
       return "localization.map needs localization.camera and localization.mount beside it";
     }
+    if (localization.start.anywhere && localization.map.empty()) {
+      return "localization.start.anywhere needs a map (localization.map): that is what is searched for the pose";
+    }
+    if (localization.start.anywhere && task.kind == TaskKind::kSearchPeople) {
+      return "localization.start.anywhere does not go with task.kind = \"search_people\", whose places are planned "
+             "before the first image from where the robot starts";
+    }
     if (probes.board.probes == 0 && !(switches.probe_lamp_line.empty() && switches.room_lamp_line.empty())) {
       return "switches.probe_lamp_line and room_lamp_line need probes (probes.board.probes): what they change is "
              "judged "

@@ -27,6 +27,8 @@ struct StartPose {
   double sigma_deg = 4.0;
   std::string file;
   calibration::Marker marker;
+  bool anywhere = false;
+  double turn_radps = 0.6;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -41,6 +43,11 @@ struct StartPose {
         "The file in which a run stores its last pose; the next run prefers it to the pose above; empty means none.");
     visit.section("marker", self.marker,
                   "A marker at a known place that is searched for in the first image when there is no such file");
+    visit.flag(
+        "anywhere", self.anywhere,
+        "When neither such a file nor the marker says where the robot is, it turns on the spot and searches the "
+        "whole map for its pose, instead of beginning at the pose above; its task waits until the pose is found.");
+    visit.number("turn_radps", self.turn_radps, {0.1, 0.78}, "rad/s", "The turn rate during this search.");
   }
 };
 

@@ -1,0 +1,73 @@
+// A robot that boots where nobody tells it: the robot's program in the simulated home, images of half the size.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace cgsr::app::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class RunAnywhere : public ::testing::Test {
+ protected:
+  /// It stands elsewhere than its file says, and may turn from a second on.
+  std::string robot(const Keys& changes = {}) {
+    write_text(scratch_ / "scenario.toml",
+               "world = \"" CGSR_SOURCE_DIR
+               "/config/worlds/home.toml\"\n"
+               "robot = \"robot\"\n"
+               "start = { given = true, x_m = 4.6, y_m = 3.2, heading_deg = 70.0 }\n"
+               "camera = { edge_samples = 1 }\n"
+               "line = [{ name = \"arming\", input = true }]\n"
+               "line_event = [{ what = \"pressed\", line = \"arming\", from_s = 1.1 }]\n"
+               "actor = [{ name = \"cart\", presence = [{ at_s = 0.0, present = false }] }]\n");
+    Keys keys = changes;
+    keys.insert({{"camera.pinhole.fx_px", "300.9"},
+                 {"camera.pinhole.fy_px", "289.7"},
+                 {"camera.pinhole.cx_px", "159.5"},
+                 {"camera.pinhole.cy_px", "119.5"},
+                 {"sim.width_px", "320"},
+                 {"sim.height_px", "240"},
+                 {"sim.cache", "false"},
+                 {"sim.scenario", quoted(scratch_ / "scenario.toml")},
+                 {"stage.localize.units", "60"},
+                 {"localization.start.turn_radps", "0.78"},
+                 {"motion.max_turn_radps", "0.78"}});
+    write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-home-anywhere.toml", keys));
+    return scratch_ / "robot.toml";
+  }
+
+  ScratchFolder scratch_;
+};
+
+TEST_F(RunAnywhere, FindsItsFirstPoseByTurningAndDrivesOn) {
+  const auto outcome =
+      run_cgsr({"run", "--config", robot(), "--duration", "16", "--seed", "3", "--json", scratch_ / "run.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto summary = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  std::vector<std::string> phases;
+  for (const auto& event : summary["events"]) {
+    if (event["source"] == "first pose") phases.push_back(event["state"]);
+  }
+  EXPECT_EQ(phases, (std::vector<std::string>{"comparing", "trying", "settling", "found"}));
+  EXPECT_GT(summary["pose"]["images"], 30) << "the rest of the run says nothing";
+  EXPECT_LE(summary["pose"]["worst_cm"], 5.0);
+  EXPECT_LE(summary["pose"]["worst_deg"], 1.5);
+  EXPECT_GT(summary["outputs"]["decision"]["images"]["state"]["on its way"], 30) << "its task waits for ever";
+}
+
+TEST_F(RunAnywhere, RefusesAFileWithWhichItCannotBe) {
+  const auto without_map = run_cgsr({"run", "--config", robot({{"localization.map", "\"\""}}), "--duration", "1"});
+  EXPECT_NE(without_map.exit_code, 0);
+  const auto few = run_cgsr({"run", "--config", robot({{"stage.localize.units", "5"}}), "--duration", "1"});
+  EXPECT_NE(few.exit_code, 0);
+  EXPECT_THAT(few.errors, HasSubstr("stage.localize.units = 5: localization.start.anywhere needs at least 6"));
+}
+
+}  // namespace
+}  // namespace cgsr::app::testing
