@@ -94,9 +94,8 @@ Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, Work
   } else if (phase_ == Phase::kTrying) {
     if (try_candidates(budget, mask)) phase_ = verdict();
   } else if (phase_ == Phase::kSettling) {
-    const Settling::Answer answer = settling_.update(turn_, image, motion, budget, mask);
-    if (answer == Settling::Answer::kConfirmed) phase_ = Phase::kFound;
-    if (answer == Settling::Answer::kRefused) phase_ = Phase::kNotFound;
+    const auto confirmed = settling_.update(turn_, image, motion, budget, mask);
+    if (confirmed) phase_ = *confirmed ? Phase::kFound : Phase::kNotFound;
   }
   return phase_;
 }

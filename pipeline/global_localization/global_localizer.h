@@ -79,14 +79,14 @@ class GlobalLocalizer {
   Turn turn_;
   PlaceIndex index_;
   CandidateSearch search_;
-  Phase phase_ = Phase::kTurning;
   Panorama seen_;
-  bool closed_ = false;                          ///< the turn is.
-  bool gathered_ = false;                        ///< seen_ is.
   std::size_t trial_ = 0;                        ///< candidate under trial.
   std::array<std::size_t, kKeyframes> order_{};  ///< of the images of the turn in every trial.
   int looks_ = 0;                                ///< at most; so many of order_ are used.
   int looks_to_last_ = 0;                        ///< until the last image of the turn is among them.
+  Phase phase_ = Phase::kTurning;
+  bool closed_ = false;    ///< the turn is.
+  bool gathered_ = false;  ///< seen_ is.
   bool under_trial_ = false;
   bool looking_ = false;  ///< at an image of the turn, since an earlier update.
 };

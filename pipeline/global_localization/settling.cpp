@@ -75,9 +75,9 @@ bool Settling::is_sure() const {
          std::sqrt(covariance(5, 5)) <= parameters_.max_sigma_deg * kDegree;
 }
 
-Settling::Answer Settling::update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
-                                  const std::uint8_t* mask) {
-  if (++images_ > parameters_.max_settling_images) return Answer::kRefused;
+std::optional<bool> Settling::update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
+                                     const std::uint8_t* mask) {
+  if (++images_ > parameters_.max_settling_images) return false;
   const double turned_rad = turn.turned_rad();
   if (!view_) {
     if (const auto view = faced_view(turn, turned_rad)) face(*view, turn);
@@ -85,27 +85,27 @@ Settling::Answer Settling::update(const Turn& turn, const ImageView& image, cons
   wants_turn_ = !view_;
   if (view_ && !looking_) looking_ = begins_to_look(turned_rad);
   turned_before_rad_ = turned_rad;
-  if (!view_) return Answer::kGoesOn;
+  if (!view_) return std::nullopt;
   const geometry::Pose X_FR = turn.X_FR();
   tracker_.moved(X_FR_before_.inverse() * X_FR);
   tracker_.pitched(motion.pitch_rad, motion.axle_height_m);
   X_FR_before_ = X_FR;
-  if (!looking_) return Answer::kGoesOn;
+  if (!looking_) return std::nullopt;
   tracker_.see(image, budget, mask);
   return judge();
 }
 
-Settling::Answer Settling::judge() {
+std::optional<bool> Settling::judge() {
   const localization::Correction& correction = now().correction;
-  if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return Answer::kGoesOn;
-  if (correction.corrected && is_sure()) return Answer::kConfirmed;
-  if (correction.corrected && ++unsure_images_ < kMaxUnsureImages) return Answer::kGoesOn;
+  if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return std::nullopt;
+  if (correction.corrected && is_sure()) return true;
+  if (correction.corrected && ++unsure_images_ < kMaxUnsureImages) return std::nullopt;
   views_[*view_].matches = 0;
   view_ = std::nullopt;
   looking_ = false;
   wants_turn_ = true;
   const bool any = std::ranges::any_of(views_, [](const CorrectedView& view) { return view.matches > 0; });
-  return any ? Answer::kGoesOn : Answer::kRefused;
+  return any ? std::nullopt : std::optional(false);
 }
 
 }  // namespace cgsr::global_localization

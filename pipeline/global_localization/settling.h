@@ -23,8 +23,6 @@ namespace cgsr::global_localization {
 /// Allocates nothing.
 class Settling {
  public:
-  enum class Answer : std::uint8_t { kGoesOn, kConfirmed, kRefused };
-
   /// \param localizer  outlives it.
   Settling(localization::Localizer& localizer, const geometry::Pose& X_RC,
            const localization::PoseTrackerParameters& tracking, const GlobalLocalizerParameters& parameters);
@@ -33,8 +31,9 @@ class Settling {
   void begin(const Candidate& candidate);
 
   /// \param turn  whole, with the images in which the candidate was tried; it has followed the motion to this image.
-  Answer update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
-                const std::uint8_t* mask);
+  /// \return whether the pose is confirmed, or no view is left that could do so; nothing: it goes on.
+  std::optional<bool> update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
+                             const std::uint8_t* mask);
 
   [[nodiscard]] bool wants_turn() const { return wants_turn_; }
   /// The camera at the last image.
@@ -44,7 +43,7 @@ class Settling {
   [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn, double turned_rad) const;
   void face(std::size_t view, const Turn& turn);
   [[nodiscard]] bool begins_to_look(double turned_rad);
-  [[nodiscard]] Answer judge();
+  [[nodiscard]] std::optional<bool> judge();
   [[nodiscard]] bool is_sure() const;
 
   localization::Localizer* localizer_;

@@ -62,7 +62,8 @@ class Turn {
   [[nodiscard]] std::span<const Keyframe> keyframes() const { return keyframes_; }
   /// The image of the beginning that the last one looks like.
   [[nodiscard]] std::size_t closing_view() const { return closed_; }
-  /// The robot in the level frame below it at the first image, now and at an image of the turn: how it moved since and leans, with its heading as the closed turn has it.
+  /// The robot in the level frame below it at the first image, now and at an image of the turn: how it moved since and leans, with its heading as the
+  /// closed turn has it.
   [[nodiscard]] geometry::Pose X_FR(const Keyframe& keyframe) const {
     return X_FR(keyframe.motion, keyframe.turned_rad);
   }

@@ -147,6 +147,21 @@ struct Robot {
   /// Some device is one of this computer.
   [[nodiscard]] bool real() const { return real_camera() || real_base() || real_switches(); }
 
+  /// \return what is wrong with what is said of the map; empty when nothing is.
+  [[nodiscard]] std::string map_inconsistency() const {
+    if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
+      return "localization.map needs localization.camera and localization.mount beside it";
+    }
+    if (localization.start.anywhere && localization.map.empty()) {
+      return "localization.start.anywhere needs a map (localization.map): that is what is searched for the pose";
+    }
+    if (localization.start.anywhere && task.kind == TaskKind::kSearchPeople) {
+      return "localization.start.anywhere does not go with task.kind = \"search_people\", whose places are planned "
+             "before the first image from where the robot starts";
+    }
+    return "";
+  }
+
   /// \return what is wrong with the sections together; empty when nothing is.
   [[nodiscard]] std::string inconsistency() const {
     const bool live = run.pace == Pace::kLive;
@@ -178,16 +193,7 @@ struct Robot {
       return "shade.lamp.given = true needs a map (localization.map), from which shadows are computed, and no probes "
              "(probes.board.probes): they find the lamp";
     }
-    if (!localization.map.empty() && (localization.camera.empty() || localization.mount.empty())) {
-      return "localization.map needs localization.camera and localization.mount beside it";
-    }
-    if (localization.start.anywhere && localization.map.empty()) {
-      return "localization.start.anywhere needs a map (localization.map): that is what is searched for the pose";
-    }
-    if (localization.start.anywhere && task.kind == TaskKind::kSearchPeople) {
-      return "localization.start.anywhere does not go with task.kind = \"search_people\", whose places are planned "
-             "before the first image from where the robot starts";
-    }
+    if (const auto wrong = map_inconsistency(); !wrong.empty()) return wrong;
     if (probes.board.probes == 0 && !(switches.probe_lamp_line.empty() && switches.room_lamp_line.empty())) {
       return "switches.probe_lamp_line and room_lamp_line need probes (probes.board.probes): what they change is "
              "judged "

@@ -105,7 +105,7 @@ Result<Report> repeat_one(const Experiment& experiment, Setting setting, const S
   setting.seed = first.seed;
   setting.trials = std::min(first.trials, setting.trials > 0 ? setting.trials : (first.trials + 9) / 10);
   setting.count = false;
-  const auto again = measure(experiment, setting);
+  auto again = measure(experiment, setting);
   setting.progress("");
   if (!again) return again;
   auto report = repeated(**stored, *again);
