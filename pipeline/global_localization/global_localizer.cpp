@@ -79,6 +79,8 @@ Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, Work
     const bool looked = turn_.looks_at(motion);
     if (turn_.see(image, motion, mask)) {
       phase_ = Phase::kComparing;
+    } else if (turn_.leads_nowhere()) {
+      phase_ = Phase::kNotFound;
     } else if (!looked) {
       index_.build(budget);
     }
@@ -175,7 +177,7 @@ void GlobalLocalizer::look_at_next(Candidate& candidate, WorkBudget& budget, con
   ++candidate.looked_at;
   if (correction.corrected) {
     ++candidate.corrected;
-    candidate.views[view] = {correction.matches, {tracker_.now().X_WC, tracker_.now().covariance}};
+    candidate.views[view] = {correction.matches, {correction.X_WC, correction.covariance}};
   }
 }
 

@@ -28,7 +28,7 @@ namespace cgsr::global_localization {
 /// The pose of a robot that was put down anywhere in its map, without a marker or a last run. While it turns on the spot once, twelve images make a
 /// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are handed to the
 /// localizer of chapter 4, with the images of the turn and the odometry between them. A place is the robot's when the localizer corrects it in several of
-/// these images and no other place that was tried in more than half as many.
+/// these images, and no other place that was tried in more than half as large a share of them; an image of now confirms it.
 /// Ours: the dissertation starts from a known pose (4.1).
 ///
 /// What perceives an image's edges comes before all units of work, as for the localizer; so do closing and gathering the turn, which have an image each and

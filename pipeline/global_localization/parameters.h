@@ -30,7 +30,8 @@ struct GlobalLocalizerParameters {
   int max_failed = 4;            ///< a candidate is given up when none of so many images corrected it.
   double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,
   double max_sigma_deg = 0.5;   ///< ... and its heading to a third of 1.5 degrees.
-  int max_settling_images = 300;  ///< after which no image confirmed the pose: a turn with some looks.
+  double max_settling_turn_deg = 450.0;  ///< after which no image confirmed the pose,
+  int max_settling_images = 900;         ///< ... nor so many of a robot that does not turn on.
 };
 
 }  // namespace cgsr::global_localization

@@ -8,9 +8,10 @@ namespace cgsr::global_localization {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kFaced = 15.0 * kDegree;    // from where a view was looked at
-constexpr double kStanding = 0.5 * kDegree;  // turned between two images, or less
-constexpr int kMaxBrakingImages = 15;        // after which it is looked at from a robot that turns
+constexpr double kFaced = 15.0 * kDegree;     // from where a view was looked at
+constexpr double kStanding = 0.15 * kDegree;  // turned between two images, or less
+constexpr int kMaxBrakingImages = 30;         // after which it is looked at from a robot that turns
+constexpr int kMaxStandingImages = 60;        // although it should turn on
 constexpr int kMaxUnsureImages = 15;
 constexpr double kGoodView = 0.5;      // of the most matches of all views
 constexpr double kManyMatches = 12.0;  // are good in any case
@@ -38,53 +39,73 @@ void Settling::begin(const Candidate& candidate) {
   view_ = std::nullopt;
   wants_turn_ = false;
   images_ = 0;
+  standing_images_ = 0;
+  begun_rad_ = std::nullopt;
 }
 
-std::optional<std::size_t> Settling::faced_view(const Turn& turn, double turned_rad) const {
+std::optional<std::size_t> Settling::nearest_view(const Turn& turn, double within_rad) const {
+  std::optional<std::size_t> nearest;
   for (std::size_t i = views_.size(); i-- > 0;) {
-    if (views_[i].matches > 0 && std::abs(wrapped(turn.keyframes()[i].turned_rad - turned_rad)) <= kFaced) return i;
+    const double apart_rad = std::abs(wrapped(turn.keyframes()[i].turned_rad - turn.turned_rad()));
+    if (views_[i].matches == 0 || apart_rad > within_rad) continue;
+    nearest = i;
+    within_rad = apart_rad;
   }
-  return std::nullopt;
+  return nearest;
 }
 
-// From where it was looked at in the turn, and what the odometry of a turn leaves; of the last view, the little way from there.
+std::optional<std::size_t> Settling::faced_view(const Turn& turn) {
+  standing_images_ = stands(turn) ? standing_images_ + 1 : 0;
+  return nearest_view(turn, standing_images_ > kMaxStandingImages ? std::numbers::pi : kFaced);
+}
+
+bool Settling::stands(const Turn& turn) const {
+  return std::abs(wrapped(turn.turned_rad() - turned_before_rad_)) <= kStanding;
+}
+
+// From where it was looked at in the turn; a whole turn later, with what the odometry of a turn leaves.
 void Settling::face(std::size_t view, const Turn& turn) {
   view_ = view;
   looking_ = false;
   braking_images_ = 0;
+  standing_images_ = 0;
+  const Keyframe& keyframe = turn.keyframes()[view];
   localization::Prior prior = views_[view].pose;
-  if (view + 1 < views_.size()) {
+  if (std::abs(turn.turned_rad() - keyframe.turned_rad) > std::numbers::pi) {
     prior.covariance.topLeftCorner<2, 2>().diagonal().array() += square(parameters_.turn_sigma_m);
     prior.covariance(5, 5) += square(parameters_.turn_sigma_deg * kDegree);
   }
   tracker_.start(prior);
-  X_FR_before_ = turn.X_FR(turn.keyframes()[view]);
+  X_FR_before_ = turn.X_FR(keyframe);
 }
 
-bool Settling::begins_to_look(double turned_rad) {
-  const bool stands = std::abs(wrapped(turned_rad - turned_before_rad_)) <= kStanding;
-  if (!stands && ++braking_images_ < kMaxBrakingImages) return false;
+bool Settling::begins_to_look(const Turn& turn) {
+  if (!stands(turn) && ++braking_images_ < kMaxBrakingImages) return false;
   localizer_->restart();
   unsure_images_ = 0;
   return true;
 }
 
+// In the map as it is: what the map itself is off by no image makes less.
 bool Settling::is_sure() const {
-  const geometry::Matrix6d& covariance = now().covariance;
+  const geometry::Matrix6d& covariance = now().correction.covariance;
   return std::sqrt(covariance.topLeftCorner<2, 2>().trace()) <= parameters_.max_sigma_m &&
          std::sqrt(covariance(5, 5)) <= parameters_.max_sigma_deg * kDegree;
 }
 
 std::optional<bool> Settling::update(const Turn& turn, const ImageView& image, const Motion& motion, WorkBudget& budget,
                                      const std::uint8_t* mask) {
-  if (++images_ > parameters_.max_settling_images) return false;
-  const double turned_rad = turn.turned_rad();
+  if (!begun_rad_) begun_rad_ = turn.turned_rad();
+  if (++images_ > parameters_.max_settling_images ||
+      std::abs(turn.turned_rad() - *begun_rad_) > parameters_.max_settling_turn_deg * kDegree) {
+    return false;
+  }
   if (!view_) {
-    if (const auto view = faced_view(turn, turned_rad)) face(*view, turn);
+    if (const auto view = faced_view(turn)) face(*view, turn);
   }
   wants_turn_ = !view_;
-  if (view_ && !looking_) looking_ = begins_to_look(turned_rad);
-  turned_before_rad_ = turned_rad;
+  if (view_ && !looking_) looking_ = begins_to_look(turn);
+  turned_before_rad_ = turn.turned_rad();
   if (!view_) return std::nullopt;
   const geometry::Pose X_FR = turn.X_FR();
   tracker_.moved(X_FR_before_.inverse() * X_FR);

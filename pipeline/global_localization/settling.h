@@ -18,7 +18,7 @@ namespace cgsr::global_localization {
 
 /// Confirms a candidate's pose by the image of now. The robot turns on until it faces a view of the turn in which the localizer found much of the map during
 /// the trial, and stands while that is looked at again, from the pose that was found then: one that turns sees another view before a search has ended. Mostly
-/// it faces one already, the last of the turn.
+/// it faces one already, the last of the turn. A robot that stands although it should turn on is looked from as it stands.
 ///
 /// Allocates nothing.
 class Settling {
@@ -40,9 +40,11 @@ class Settling {
   [[nodiscard]] const localization::TrackedPose& now() const { return tracker_.now(); }
 
  private:
-  [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn, double turned_rad) const;
+  [[nodiscard]] std::optional<std::size_t> nearest_view(const Turn& turn, double within_rad) const;
+  [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn);
   void face(std::size_t view, const Turn& turn);
-  [[nodiscard]] bool begins_to_look(double turned_rad);
+  [[nodiscard]] bool stands(const Turn& turn) const;
+  [[nodiscard]] bool begins_to_look(const Turn& turn);
   [[nodiscard]] std::optional<bool> judge();
   [[nodiscard]] bool is_sure() const;
 
@@ -56,7 +58,9 @@ class Settling {
   int braking_images_ = 0;
   int unsure_images_ = 0;  ///< of this look, that corrected the pose and left it too uncertain.
   int images_ = 0;
+  std::optional<double> begun_rad_;  ///< turned when it began.
   double turned_before_rad_ = 0.0;
+  int standing_images_ = 0;                                  ///< without a view that is worth a look.
   geometry::Pose X_FR_before_ = geometry::Pose::Identity();  ///< since the turn's first image, at the image before.
 };
 

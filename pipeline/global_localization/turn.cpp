@@ -60,6 +60,11 @@ Turn::Turn(const geometry::Camera& camera, const Pose& X_RC, double max_drift_m)
 }
 
 void Turn::restart() {
+  begin_anew();
+  turned_in_all_rad_ = 0.0;
+}
+
+void Turn::begin_anew() {
   taken_ = 0;
   turned_rad_ = 0.0;
   share_ = 1.0;
@@ -89,8 +94,10 @@ bool Turn::has_reversed() const {
 bool Turn::see(const ImageView& image, const Motion& motion, const std::uint8_t* mask) {
   if (!motion.X_OR.matrix().allFinite() || !std::isfinite(motion.pitch_rad)) return false;
   if (taken_ > 0) {
-    turned_rad_ += turn_between(X_OR_before_, motion.X_OR);
-    if (has_left(motion) || has_reversed()) restart();
+    const double step_rad = turn_between(X_OR_before_, motion.X_OR);
+    turned_rad_ += step_rad;
+    turned_in_all_rad_ += std::abs(step_rad);
+    if (has_left(motion) || has_reversed()) begin_anew();
   }
   X_OR_before_ = motion.X_OR;
   if (std::abs(turned_rad_) < next_turn()) return false;
@@ -212,6 +219,7 @@ Pose Turn::X_FR(const Motion& motion, double turned_rad) const {
 }
 
 void Turn::follow(const Motion& motion) {
+  if (!motion.X_OR.matrix().allFinite() || !std::isfinite(motion.pitch_rad)) return;
   turned_rad_ += turn_between(X_OR_before_, motion.X_OR);
   X_OR_before_ = motion.X_OR;
   now_ = motion;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,8 @@ class Turn {
   Turn(const geometry::Camera& camera, const geometry::Pose& X_RC, double max_drift_m);
 
   void restart();
+  /// Whether the robot has turned three times, and no turn became whole: its base slips or drives away.
+  [[nodiscard]] bool leads_nowhere() const { return turned_in_all_rad_ > kMostTurned; }
 
   /// Whether see() will look at the image that comes with this motion.
   [[nodiscard]] bool looks_at(const Motion& motion) const;
@@ -74,6 +77,9 @@ class Turn {
   [[nodiscard]] geometry::Pose X_FR() const { return X_FR(now_, turned_rad()); }
 
  private:
+  static constexpr double kMostTurned = 6.0 * std::numbers::pi;
+
+  void begin_anew();
   [[nodiscard]] geometry::Pose X_FR(const Motion& motion, double turned_rad) const;
   [[nodiscard]] double next_turn() const;
   [[nodiscard]] bool has_reversed() const;
@@ -89,8 +95,9 @@ class Turn {
   std::vector<localization::ProjectedPiece> turned_;  ///< edges of another one in it.
   std::array<Keyframe, kKeyframes + 1> keyframes_;
   int taken_ = 0;
-  std::size_t closed_ = 0;   ///< the image that the last one closes the turn with.
-  double turned_rad_ = 0.0;  ///< as the odometry says.
+  std::size_t closed_ = 0;          ///< the image that the last one closes the turn with.
+  double turned_rad_ = 0.0;         ///< as the odometry says.
+  double turned_in_all_rad_ = 0.0;  ///< either way round, with turns that began anew.
   Motion now_;
   double share_ = 1.0;  ///< of what the odometry says it turned.
   geometry::Pose X_OR_before_ = geometry::Pose::Identity();

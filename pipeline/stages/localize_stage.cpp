@@ -42,7 +42,8 @@ bool LocalizeStage::takes(const ImageView& image) const {
 
 void LocalizeStage::carry_on(const hal::Odometry& odometry) {
   const geometry::Pose X_OR = pose_of(odometry, axle_height_m_);
-  if (X_OR_) carry(X_OR_->inverse() * X_OR);
+  // While it is sought the localizer looks at images of before, which this motion does not move.
+  if (X_OR_ && !seeks_first_pose()) carry(X_OR_->inverse() * X_OR);
   X_OR_ = X_OR;
   pitch_rad_ = odometry.pitch_rad;
   lean(odometry.pitch_rad, axle_height_m_);
@@ -73,7 +74,7 @@ PoseEstimate LocalizeStage::seek_first_pose(WorkBudget& budget, const ImageView&
   if (phase != before) pose.events.add({"first pose", to_string(phase), {}});
   if (phase == Phase::kFound) {
     pose.camera = first_pose_->found();
-    tracker_.start({pose.camera.X_WC, pose.camera.covariance});
+    tracker_.start({pose.camera.X_WC, pose.camera.correction.covariance});
     tell(pose);
   } else if ((phase == Phase::kAmbiguous || phase == Phase::kNotFound) && !given_up && ++first_turns_ < kFirstTurns) {
     first_pose_->restart();

@@ -262,6 +262,13 @@ Result<void> make_localization(RobotState& state) {
       return fail(fmt::format("stage.localize.units = {}: localization.start.anywhere needs at least {}", units,
                               localization::kMinSearchUnits));
     }
+    if (!known.tracker.floor) {
+      return fail("localization.tracker.floor = false: localization.start.anywhere needs a robot on a level floor");
+    }
+    if (state.setup.config.motion.keep_in.enabled) {
+      state.report.notes.push_back(
+          "motion.keep_in is seen from where the robot stands now, wherever in the map that is");
+    }
     auto places = app::start_places(*state.vision.map, known.map);
     if (!places) return tl::unexpected(places.error());
     setup.start_places_m = std::move(*places);

@@ -218,6 +218,18 @@ TEST_F(PutDownAnywhere, BeginsAnewWhereItWasMoved) {
   EXPECT_FALSE(searcher_->wants_turn());
 }
 
+// A base that drives away whenever it turns: no turn becomes whole, and it is not asked to turn for ever.
+TEST_F(PutDownAnywhere, GivesUpWhereNoTurnBecomesWhole) {
+  X_W0_ = geometry::pose_on_floor(0.9, 1.7, 0.3);
+  int images = 0;
+  for (; searcher_->wants_turn() && images < 300; ++images) {
+    const double away_m = images / 18 % 2 == 0 ? 0.0 : 0.8;
+    see(X_W0_ * geometry::pose_on_floor(away_m, 0.2, images * kTurn), whole_);
+  }
+  EXPECT_EQ(searcher_->phase(), Phase::kNotFound);
+  EXPECT_NEAR(images, 3 * 36, 3);
+}
+
 // All black: nothing to see anywhere.
 TEST_F(PutDownAnywhere, SaysThatItFindsNothing) {
   const std::vector<std::uint8_t> black(320 * 240, 2);

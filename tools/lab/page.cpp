@@ -18,7 +18,7 @@ This page is generated from `docs/results/*.json` by `cgsr reproduce --page`; ed
 seed that is drawn (at least 1000; smaller ones are for tuning and tests), and joins its trials to those that were measured with the same
 configuration and sources. Every figure stands with its 95 % interval where trials give one. 'Met' is said of the figure; 'not sure' is added where
 the interval reaches beyond the requirement. Repeated: sources or configuration have changed since in what the table does not measure, which trials that
-were measured again showed (`cgsr reproduce NAME --repeat`). Stale: the configuration or the sources of the rooms that the table measures have changed since
+were measured again showed (`cgsr reproduce NAME --repeat`: each sample of theirs is the same; shares and cost are not compared). Stale: the configuration or the sources of the rooms that the table measures have changed since
 (`tools/check` lists such tables). What was measured before is in CHANGELOG.md.
 )";
 

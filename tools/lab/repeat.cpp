@@ -17,7 +17,10 @@ std::string words(const Row& row) {
 }
 
 /// \return how many samples are the same; or the first that is not.
-Result<std::size_t> compare_samples(const Row& before, const Row& now) {
+Result<std::size_t> compare_samples(const Row& before, const Row& now, bool whole) {
+  if (now.samples.empty() || (whole && now.samples.size() != before.samples.size())) {
+    return fail(fmt::format("{} has {} samples now, {} before", words(now), now.samples.size(), before.samples.size()));
+  }
   for (std::size_t i = 0; i < now.samples.size(); ++i) {
     if (i >= before.samples.size()) {
       return fail(
@@ -42,6 +45,7 @@ Result<std::size_t> compare_figures(const Row& before, const Row& now) {
 }  // namespace
 
 Result<Report> repeated(const Report& stored, const Report& again) {
+  if (stored.runs.empty()) return fail(fmt::format("{}: no run is stored of it", stored.name));
   const Run& first = stored.runs.front();
   const Run& run = again.runs.front();
   if (stored.name != again.name || run.seed != first.seed || run.trials > first.trials) {
@@ -51,11 +55,12 @@ Result<Report> repeated(const Report& stored, const Report& again) {
   const bool whole = stored.runs.size() == 1 && run.trials == first.trials;
   std::size_t figures = 0;
   for (const Row& now : again.rows) {
-    if (!whole && !has_a_sample_per_trial(now)) continue;
     const auto same = [&](const Row& row) { return row.row == now.row && row.quantity == now.quantity; };
     const auto before = std::ranges::find_if(stored.rows, same);
     if (before == stored.rows.end()) return fail(fmt::format("{}: {} is new", stored.name, words(now)));
-    const auto compared = has_a_sample_per_trial(now) ? compare_samples(*before, now) : compare_figures(*before, now);
+    const bool sampled = has_a_sample_per_trial(*before);
+    if (!whole && !sampled) continue;
+    const auto compared = sampled ? compare_samples(*before, now, whole) : compare_figures(*before, now);
     if (!compared) return fail(fmt::format("{}: {}", stored.name, compared.error().message));
     figures += *compared;
   }
