@@ -266,7 +266,7 @@ Result<void> make_localization(RobotState& state) {
       return fail("localization.tracker.floor = false: localization.start.anywhere needs a robot on a level floor");
     }
     if (state.setup.config.motion.keep_in.enabled) {
-      state.report.notes.push_back(
+      state.report.notes.emplace_back(
           "motion.keep_in is seen from where the robot stands now, wherever in the map that is");
     }
     auto places = app::start_places(*state.vision.map, known.map);

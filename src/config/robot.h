@@ -193,7 +193,7 @@ struct Robot {
       return "shade.lamp.given = true needs a map (localization.map), from which shadows are computed, and no probes "
              "(probes.board.probes): they find the lamp";
     }
-    if (const auto wrong = map_inconsistency(); !wrong.empty()) return wrong;
+    if (auto wrong = map_inconsistency(); !wrong.empty()) return wrong;
     if (probes.board.probes == 0 && !(switches.probe_lamp_line.empty() && switches.room_lamp_line.empty())) {
       return "switches.probe_lamp_line and room_lamp_line need probes (probes.board.probes): what they change is "
              "judged "
