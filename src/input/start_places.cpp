@@ -19,7 +19,7 @@ Result<std::vector<Eigen::Vector2d>> start_places(const world::Map& map, const s
   if (floor.width_m() * floor.depth_m() > kMostFloor_m2) {
     return fail(fmt::format(
         "{}: covers {:.0f} x {:.0f} m; a first pose is searched for on at most {:.0f} square metres: is the map in "
-        "metres (--scale)?",
+        "metres? --scale of cgsr map and cgsr localize converts it",
         map_file, floor.width_m(), floor.depth_m(), kMostFloor_m2));
   }
   auto places = global_localization::grid_of_places(map, parameters.spacing_m,

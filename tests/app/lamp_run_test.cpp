@@ -32,19 +32,12 @@ class LampRun : public ::testing::Test {
                 "radius_m = 0.02, visible = false, lumens = 250.0, switch = \"probe lamp\" },\n"
                 "  { name = \"reading lamp\", position_m = [4.2, 1.4, 2.3], radius_m = 0.05, lumens = 700.0, "
                 "switch = \"reading lamp\" }]\n";
-    robot_ = {{"camera.pinhole.fx_px", "300.9"},
-              {"camera.pinhole.fy_px", "289.7"},
-              {"camera.pinhole.cx_px", "159.5"},
-              {"camera.pinhole.cy_px", "119.5"},
-              {"sim.width_px", "320"},
-              {"sim.height_px", "240"},
-              {"sim.cache", "false"},
-              {"sim.scenario", quoted("scenario.toml")},
-              {"localization.start.x_m", "4.6"},
-              {"localization.start.y_m", "3.2"},
-              {"task.lamp.min_locate_s", "0.3"},
-              {"task.lamp.max_locate_s", "0.6"},
-              {"task.lamp.max_probes_loss_s", "0.4"}};
+    robot_ = half_size({{"sim.scenario", quoted("scenario.toml")},
+                        {"localization.start.x_m", "4.6"},
+                        {"localization.start.y_m", "3.2"},
+                        {"task.lamp.min_locate_s", "0.3"},
+                        {"task.lamp.max_locate_s", "0.6"},
+                        {"task.lamp.max_probes_loss_s", "0.4"}});
   }
 
   void change(const Keys& changes) {

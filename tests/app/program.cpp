@@ -111,6 +111,17 @@ void write_text(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
+Keys half_size(Keys more) {
+  more.insert({{"camera.pinhole.fx_px", "300.9"},
+               {"camera.pinhole.fy_px", "289.7"},
+               {"camera.pinhole.cx_px", "159.5"},
+               {"camera.pinhole.cy_px", "119.5"},
+               {"sim.width_px", "320"},
+               {"sim.height_px", "240"},
+               {"sim.cache", "false"}});
+  return more;
+}
+
 std::string quoted(const std::string& text) {
   return '"' + text + '"';
 }

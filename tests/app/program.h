@@ -69,6 +69,9 @@ void write_text(const std::string& path, const std::string& text);
 /// Values of configuration keys, as TOML, by the path of the key.
 using Keys = std::map<std::string, std::string>;
 
+/// \return the keys of a simulated robot whose images have half the size, 320x240, and are kept nowhere, with some more.
+Keys half_size(Keys more);
+
 /// \return `text` as a TOML value.
 std::string quoted(const std::string& text);
 

@@ -23,18 +23,11 @@ class RunSimulated : public ::testing::Test {
  protected:
   /// The shipped robot with images of half the size.
   std::string small_robot(const Keys& changes = {}) {
-    Keys keys = changes;
-    keys.insert({{"camera.pinhole.fx_px", "300.9"},
-                 {"camera.pinhole.fy_px", "289.7"},
-                 {"camera.pinhole.cx_px", "159.5"},
-                 {"camera.pinhole.cy_px", "119.5"},
-                 {"run.learn.x_px", "118"},
+    Keys keys = half_size(changes);
+    keys.insert({{"run.learn.x_px", "118"},
                  {"run.learn.y_px", "125"},
                  {"run.learn.width_px", "33"},
-                 {"run.learn.height_px", "64"},
-                 {"sim.width_px", "320"},
-                 {"sim.height_px", "240"},
-                 {"sim.cache", "false"}});
+                 {"run.learn.height_px", "64"}});
     const std::string file = scratch_ / ("robot" + std::to_string(++robots_) + ".toml");
     write_text(file, extended(CGSR_SOURCE_DIR "/config/robots/sim-home.toml", keys));
     return file;

@@ -125,6 +125,14 @@ world::Map small_room() {
   return b.map;
 }
 
+geometry::Pose leaning(double pitch_rad, double axle_height_m) {
+  const Eigen::Vector3d axle(0.0, 0.0, axle_height_m);
+  geometry::Pose tilt = geometry::Pose::Identity();
+  tilt.linear() = Eigen::AngleAxisd(pitch_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  tilt.translation() = axle - tilt.linear() * axle;
+  return tilt;
+}
+
 geometry::Pose in_small_room(double x_m, double y_m, double heading_rad) {
   geometry::Pose X_RC = geometry::Pose::Identity();
   Eigen::Matrix3d R;

@@ -32,6 +32,9 @@ world::Map small_room();
 /// A camera 0.6 m above the room's floor, looking level but a little down.
 geometry::Pose in_small_room(double x_m, double y_m, double heading_rad);
 
+/// \return X_RL: a robot that leans, nose down, about an axle that high.
+geometry::Pose leaning(double pitch_rad, double axle_height_m);
+
 /// How a camera sees a map, by rays through every pixel: each surface in its grey, shaded by direction.
 class Picture {
  public:

@@ -25,6 +25,7 @@ namespace cgsr::lab {
 namespace {
 
 constexpr std::string_view kPage = "docs/results.md";
+constexpr int kRepeatedShare = 10;  // a tenth of the trials
 
 Result<std::vector<const Experiment*>> chosen(const ReproduceOptions& options) {
   std::vector<const Experiment*> all;
@@ -103,7 +104,12 @@ Result<Report> repeat_one(const Experiment& experiment, Setting setting, const S
   if (!*stored) return fail(fmt::format("{}: nothing is stored that could be repeated", experiment.name));
   const Run& first = (*stored)->runs.front();
   setting.seed = first.seed;
-  setting.trials = std::min(first.trials, setting.trials > 0 ? setting.trials : (first.trials + 9) / 10);
+  const int least = (first.trials + kRepeatedShare - 1) / kRepeatedShare;
+  if (setting.trials > 0 && setting.trials < least) {
+    return fail(fmt::format("--trials {}: {} were published of {}, so {} at least have to be repeated", setting.trials,
+                            first.trials, experiment.name, least));
+  }
+  setting.trials = std::min(first.trials, std::max(least, setting.trials));
   setting.count = false;
   auto again = measure(experiment, setting);
   setting.progress("");
@@ -185,10 +191,11 @@ void add_reproduce(CLI::App& app, ReproduceOptions& options) {
   app.add_flag("--store", options.store, "replace the published results of these tables (docs/results)");
   app.add_flag("--resume", options.resume,
                "the same, joining these trials to published ones of equal configuration and sources");
-  app.add_flag("--repeat", options.repeat,
-               "measure the first trials of the published results again (a tenth, or --trials), without cost; where "
-               "all give the same figures, what is "
-               "published counts as measured with this configuration and these sources")
+  app.add_flag(
+         "--repeat", options.repeat,
+         "measure the first trials of the published results again (a tenth, or more by --trials), without cost; where "
+         "all give the same figures, what is "
+         "published counts as measured with this configuration and these sources")
       ->excludes("--store")
       ->excludes("--resume")
       ->excludes("--seed");
