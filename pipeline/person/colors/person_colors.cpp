@@ -67,10 +67,11 @@ PersonColors::Person& PersonColors::room_for(Label person) {
   return *std::ranges::min_element(people_, {}, &Person::interest);
 }
 
-void PersonColors::put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+void PersonColors::put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
+                       const color::Light& light) {
   person.codes_light.reset();
-  person.positive.add(textures(positive, person.light));
-  person.negative.add(textures(negative, person.light));
+  person.positive.add(textures(positive, light));
+  person.negative.add(textures(negative, light));
 }
 
 void PersonColors::learn(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
@@ -81,12 +82,13 @@ void PersonColors::learn(Label person, std::span<const imaging::Rgb> positive, s
   one.positive.clear();
   one.negative.clear();
   one.light = assumed_light(positive, parameters_.light.assumed);
-  put(one, positive, negative);
+  put(one, positive, negative, one.light);
 }
 
-void PersonColors::add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative) {
+void PersonColors::add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
+                       const std::optional<color::Light>& light) {
   if (Person* known = find(person)) {
-    put(*known, positive, negative);
+    put(*known, positive, negative, light.value_or(known->light));
   } else {
     learn(person, positive, negative);
   }
@@ -95,8 +97,7 @@ void PersonColors::add(Label person, std::span<const imaging::Rgb> positive, std
 void PersonColors::doubt(Label person, std::span<const imaging::Rgb> negative, const color::Light& light) {
   Person* known = find(person);
   if (known == nullptr) return;
-  known->codes_light.reset();
-  known->negative.add(textures(negative, light));
+  put(*known, {}, negative, light);
 }
 
 void PersonColors::forget(Label person) {

@@ -50,8 +50,9 @@ class PersonColors {
 
   /// Learns from scratch; takes the place of the person of the oldest interest when there is no room. No samples: nothing happens.
   void learn(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
-  /// Adds to what is known of a person who is there; else the same as learn().
-  void add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
+  /// Adds to what is known of a person who is there; else the same as learn(). \param light  under which they were recorded; nothing: as at learning.
+  void add(Label person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
+           const std::optional<color::Light>& light = std::nullopt);
   /// What looks like the person and is not: negative samples, recorded under a light. Nothing happens where the person is not known.
   void doubt(Label person, std::span<const imaging::Rgb> negative, const color::Light& light);
   void forget(Label person);
@@ -84,7 +85,8 @@ class PersonColors {
   [[nodiscard]] const Person* find(Label person) const;
   Person& room_for(Label person);
   void find_codes(Person& person, const color::Light& light) const;
-  static void put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative);
+  static void put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
+                  const color::Light& light);
 
   PersonColorParameters parameters_;
   std::vector<Person> people_;

@@ -137,6 +137,10 @@ void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) 
     sighting.face_px = sighting.box.width;
     return;
   }
+  if (sighting.source == PersonSource::kShirt && shirts_.face_px()) {
+    sighting.face_px = *shirts_.face_px();
+    return;
+  }
   if (sighting.source == PersonSource::kShirt) {
     sighting.face_px = shirt_per_face_ > 0.0 ? sighting.box.height / shirt_per_face_ : face_px_;
     return;

@@ -1,6 +1,7 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -9,7 +10,8 @@ namespace cgsr::person {
 namespace {
 
 constexpr int kFactor = ColorLabels::kFactor;
-constexpr double kSamePlace = 0.4;  // overlap by the union
+constexpr double kSamePlace = 0.4;   // overlap by the union
+constexpr double kTrunkWidth = 2.2;  // in widths of the face
 
 double overlap(const Box& a, const Box& b) {
   const double both = intersection(a, b).area();
@@ -45,6 +47,14 @@ std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
   return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
 }
 
+// Where a shirt's place ends there are other colours: without them it would grow into a road or a wall of its own.
+std::array<Box, 2> beside_trunk(const Box& trunk) {
+  constexpr double kGap = 0.1, kWidth = 0.5;  // in widths of the trunk
+  const double gap = kGap * trunk.width, width = kWidth * trunk.width;
+  return {Box{trunk.x - gap - width, trunk.y, width, trunk.height},
+          Box{trunk.x + trunk.width + gap, trunk.y, width, trunk.height}};
+}
+
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
 bool is_facing(const MarkerSighting& marker) {
   constexpr double kMinWidth = 0.7;  // of its height: turned by less than 45 degrees
@@ -70,6 +80,17 @@ SamplingRegions sampling_regions(const MarkerSighting& marker) {
   return regions;
 }
 
+// From the upper edge that face_above() supposes down to the hips.
+Box trunk_below(const Box& face) {
+  constexpr double kFromFace = 1.2, kHeight = 3.2;  // in heights of the face
+  const double width = kTrunkWidth * face.width;
+  return {face.x + (face.width - width) / 2, face.y + kFromFace * face.height, width, kHeight * face.height};
+}
+
+double face_px_of_trunk(const Box& trunk) {
+  return trunk.width / kTrunkWidth;
+}
+
 Box shirt_window(const Box& head, int image_height_px) {
   constexpr double kBeside = 3.5, kFromChin = 0.5;  // in sides of the face
   const double middle = head.x + head.width / 2, top = head.y + (1.0 - kFromChin) * head.height;
@@ -81,7 +102,8 @@ ShirtClassifier::ShirtClassifier(ColorLabels& labels, const ShirtParameters& par
       labels_(labels),
       colors_(parameters.colors),
       light_(parameters.light),
-      map_(imaging::kColorCodes, 0) {
+      map_(imaging::kColorCodes, 0),
+      followed_(parameters.place) {
   prepare();
 }
 
@@ -146,9 +168,58 @@ std::optional<Label> ShirtClassifier::find(const PersonImage& input) {
   return order[largest->label - std::size_t{1}];
 }
 
+std::uint16_t ShirtClassifier::label_of(Label person) const {
+  const auto order = colors_.order();
+  return static_cast<std::uint16_t>(std::ranges::find(order, person) - order.begin() + 1);
+}
+
+// Where a face or a marker is seen it says where the shirt is.
+std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, std::optional<Label> by_blob) {
+  if (input.face || input.marker || !followed_person_) return by_blob;
+  if (!colors_.knows(*followed_person_) || (input.interest && input.interest != followed_person_)) {
+    followed_.end();
+    return by_blob;
+  }
+  const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
+  if (!place) return by_blob;
+  const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
+  learn_at_place(input, trunk);
+  if (by_blob == followed_person_ && overlap(box_, trunk) >= kSamePlace) return by_blob;
+  box_ = trunk;
+  is_by_place_ = true;
+  return followed_person_;
+}
+
+// The light and the sides of a shirt change while its person turns and walks: what is surely its own is added to its colours.
+void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk) {
+  constexpr double kMargin = 0.15;      // of its sides, where sleeves or background may be
+  constexpr double kMinContrast = 0.3;  // or it is partly covered, or before something of its colours
+  if (++since_place_learned_ < parameters_.images_between || followed_.contrast() < kMinContrast) return;
+  const Box middle{trunk.x + kMargin * trunk.width, trunk.y + kMargin * trunk.height,
+                   (1.0 - 2.0 * kMargin) * trunk.width, (1.0 - 2.0 * kMargin) * trunk.height};
+  colors_.add(*followed_person_, region_colors(input.image, middle), {}, light_.of(*followed_person_));
+  since_place_learned_ = 0;
+  map_is_due_ = true;
+}
+
+void ShirtClassifier::follow_from(const Teacher& teacher) {
+  followed_.end();
+  followed_person_ = teacher.person;
+  since_place_learned_ = 0;
+  if (!followed_person_ || !colors_.knows(*followed_person_)) return;
+  const Box trunk = trunk_below(teacher.face);
+  followed_.begin(labels_.of(ColorPart::kShirt), label_of(*followed_person_),
+                  {trunk.x / kFactor, trunk.y / kFactor, trunk.width / kFactor, trunk.height / kFactor});
+}
+
+std::optional<double> ShirtClassifier::face_px() const {
+  return is_by_place_ ? std::optional(face_px_of_trunk(box_)) : std::nullopt;
+}
+
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
   box_ = elsewhere_ = {};
+  is_by_place_ = false;
   if (since_trained_ > 0) ++since_trained_;
   if (since_negative_ > 0) ++since_negative_;
   auto person = find(input);
@@ -156,6 +227,7 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
   if (supposed_ && person == person_ && overlap(box_, place_) < kSamePlace) person.reset();
   const auto& marker = input.marker;
   if (person && marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) person.reset();
+  person = find_at_place(input, person);
   if (person) {
     found(input, *person);
     return Classification{*person, parameters_.confidence};
@@ -203,6 +275,10 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   auto background = region_colors(input.image, regions.background[0]);
   const auto right = region_colors(input.image, regions.background[1]);
   background.insert(background.end(), right.begin(), right.end());
+  for (const Box& beside : beside_trunk(trunk_below(teacher.face))) {
+    const auto colors = region_colors(input.image, beside);
+    background.insert(background.end(), colors.begin(), colors.end());
+  }
   const Label person = *teacher.person;
   colors_.learn(person, region_colors(input.image, regions.shirt), background);
   if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);
@@ -236,6 +312,7 @@ void ShirtClassifier::observe(const PersonImage& input) {
   if (!teacher) return;
   seen_images_ = teacher->person && teacher->person == seen_ ? seen_images_ + 1 : 1;
   seen_ = teacher->person;
+  follow_from(*teacher);
   if (!seen_) return;
   last_face_ = teacher->face;
   if (!colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn) learn(input, *teacher);
@@ -247,6 +324,7 @@ void ShirtClassifier::forget(Label person) {
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
   if (person_ == person) person_.reset();
+  if (followed_person_ == person) followed_.end();
 }
 
 }  // namespace cgsr::person

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "pipeline/person/classifier.h"
 #include "pipeline/person/colors/blobs.h"
 #include "pipeline/person/colors/color_labels.h"
 #include "pipeline/person/colors/part_light.h"
+#include "pipeline/person/colors/part_place.h"
 #include "pipeline/person/colors/person_colors.h"
 #include "pipeline/person/marker/marker_tracks.h"
 #include "pipeline/person/tracking/person_image.h"
@@ -18,9 +20,15 @@ namespace cgsr::person {
 /// (Fig. 6.3), where neither shirt nor arms are.
 SamplingRegions sampling_regions(const MarkerSighting& marker);
 
+/// \return the trunk below a face, as wide and high as a shirt without its sleeves is. Ours.
+Box trunk_below(const Box& face);
+/// \return the width of the face above a trunk.
+double face_px_of_trunk(const Box& trunk);
+
 struct ShirtParameters {
   PersonColorParameters colors{};
   PartLightParameters light{};
+  PartPlaceParameters place{};
   int images_to_learn = 10;
   int images_between = 15;
   double min_area = 0.15;
@@ -33,6 +41,7 @@ struct ShirtParameters {
   static void describe(Self& self, Visitor& visit) {
     visit.section("colors", self.colors, "Colours of people");
     visit.section("light", self.light, "How the light on a shirt is followed");
+    visit.section("place", self.place, "How the place of a shirt is followed");
     visit.number("images_to_learn", self.images_to_learn, Range{1, 100}, "",
                  "A shirt is learned when its person's face was recognised in so many images.");
     visit.number("images_between", self.images_between, Range{1, 1000}, "",
@@ -55,7 +64,9 @@ Box shirt_window(const Box& head, int image_height_px);
 
 /// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
 /// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
-/// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt.
+/// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
+/// last face or marker on it is followed at its place too (PartPlace): a blob that is elsewhere, or of another size, is not believed while it is there, and what
+/// it looks like there is learned slowly.
 ///
 /// Threads: one. Allocates when it is trained.
 class ShirtClassifier final : public Classifier<PersonImage> {
@@ -80,6 +91,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
 
   /// \return the shirt that was found last; empty: none in the last image.
   [[nodiscard]] const Box& box() const { return box_; }
+  /// \return the face's width at the distance of the shirt that was found last, where it was found by its place; nothing: by its blob, or not at all.
+  [[nodiscard]] std::optional<double> face_px() const;
   [[nodiscard]] std::size_t people() const { return colors_.people(); }
   [[nodiscard]] bool knows(Label person) const { return colors_.knows(person); }
   /// \return the light under which a person's shirt is looked for; nothing: it is not known.
@@ -97,6 +110,10 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] bool is_plausible(const Box& shirt, double area_px2) const;
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
+  std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
+  void follow_from(const Teacher& teacher);
+  void learn_at_place(const PersonImage& input, const Box& trunk);
+  [[nodiscard]] std::uint16_t label_of(Label person) const;
   void found(const PersonImage& input, Label person);
   void lost(const PersonImage& input);
 
@@ -115,6 +132,10 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   Box elsewhere_;  // has the colours of the person whose head is known, and is not below it; empty: nothing has
   std::optional<Label> person_;  // whose shirt was found last, and where
   Box place_;
+  PartPlace followed_;                    // the trunk, in pixels of the labels' image
+  std::optional<Label> followed_person_;  // whose
+  bool is_by_place_ = false;              // box_ is the trunk
+  int since_place_learned_ = 0;
   int missed_ = 0;          // images since then
   bool supposed_ = false;   // the map is of a light that is only supposed
   int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
