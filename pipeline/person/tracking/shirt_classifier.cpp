@@ -183,6 +183,7 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
   const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
   if (!place) return by_blob;
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
+  if (!is_plausible(trunk, trunk.area())) return by_blob;
   learn_at_place(input, trunk);
   if (by_blob == followed_person_ && overlap(box_, trunk) >= kSamePlace) return by_blob;
   box_ = trunk;
