@@ -1,7 +1,6 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -10,8 +9,8 @@ namespace cgsr::person {
 namespace {
 
 constexpr int kFactor = ColorLabels::kFactor;
-constexpr double kSamePlace = 0.4;   // overlap by the union
-constexpr double kTrunkWidth = 2.2;  // in widths of the face
+constexpr double kSamePlace = 0.4;  // overlap by the union
+constexpr double kSameSize = 0.6;   // the same, where a blob is the trunk and little else
 
 double overlap(const Box& a, const Box& b) {
   const double both = intersection(a, b).area();
@@ -47,14 +46,6 @@ std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
   return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
 }
 
-// Where a shirt's place ends there are other colours: without them it would grow into a road or a wall of its own.
-std::array<Box, 2> beside_trunk(const Box& trunk) {
-  constexpr double kGap = 0.1, kWidth = 0.5;  // in widths of the trunk
-  const double gap = kGap * trunk.width, width = kWidth * trunk.width;
-  return {Box{trunk.x - gap - width, trunk.y, width, trunk.height},
-          Box{trunk.x + trunk.width + gap, trunk.y, width, trunk.height}};
-}
-
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
 bool is_facing(const MarkerSighting& marker) {
   constexpr double kMinWidth = 0.7;  // of its height: turned by less than 45 degrees
@@ -70,32 +61,6 @@ bool lies_under(const Box& shirt, const MarkerSighting& marker) {
 }
 
 }  // namespace
-
-SamplingRegions sampling_regions(const MarkerSighting& marker) {
-  constexpr double kMargin = 0.3;  // below the black square, in sides of it: a white cell and some more
-  constexpr double kHeight = 0.8;  // in widths of the face: the shirt does not go on much farther
-  SamplingRegions regions = sampling_regions(marker.face);
-  regions.shirt = {marker.face.x, marker.box.y + (1.0 + kMargin) * marker.box.height, marker.face.width,
-                   kHeight * marker.face.width};
-  return regions;
-}
-
-// From the upper edge that face_above() supposes down to the hips.
-Box trunk_below(const Box& face) {
-  constexpr double kFromFace = 1.2, kHeight = 3.2;  // in heights of the face
-  const double width = kTrunkWidth * face.width;
-  return {face.x + (face.width - width) / 2, face.y + kFromFace * face.height, width, kHeight * face.height};
-}
-
-double face_px_of_trunk(const Box& trunk) {
-  return trunk.width / kTrunkWidth;
-}
-
-Box shirt_window(const Box& head, int image_height_px) {
-  constexpr double kBeside = 3.5, kFromChin = 0.5;  // in sides of the face
-  const double middle = head.x + head.width / 2, top = head.y + (1.0 - kFromChin) * head.height;
-  return {middle - kBeside * head.width, top, 2.0 * kBeside * head.width, std::max(0.0, image_height_px - top)};
-}
 
 ShirtClassifier::ShirtClassifier(ColorLabels& labels, const ShirtParameters& parameters)
     : parameters_(parameters),
@@ -173,7 +138,8 @@ std::uint16_t ShirtClassifier::label_of(Label person) const {
   return static_cast<std::uint16_t>(std::ranges::find(order, person) - order.begin() + 1);
 }
 
-// Where a face or a marker is seen it says where the shirt is.
+// Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
+// far away it is; how large it was where it was followed does.
 std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, std::optional<Label> by_blob) {
   if (input.face || input.marker || !followed_person_) return by_blob;
   if (!colors_.knows(*followed_person_) || (input.interest && input.interest != followed_person_)) {
@@ -181,13 +147,16 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
     return by_blob;
   }
   const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
-  if (!place) return by_blob;
+  if (!place) {
+    is_sized_by_place_ = followed_.place() && by_blob == followed_person_;
+    return by_blob;
+  }
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
   if (!is_plausible(trunk, trunk.area())) return by_blob;
   learn_at_place(input, trunk);
-  if (by_blob == followed_person_ && overlap(box_, trunk) >= kSamePlace) return by_blob;
+  if (by_blob == followed_person_ && overlap(box_, trunk) >= kSameSize) return by_blob;
   box_ = trunk;
-  is_by_place_ = true;
+  is_sized_by_place_ = true;
   return followed_person_;
 }
 
@@ -214,13 +183,14 @@ void ShirtClassifier::follow_from(const Teacher& teacher) {
 }
 
 std::optional<double> ShirtClassifier::face_px() const {
-  return is_by_place_ ? std::optional(face_px_of_trunk(box_)) : std::nullopt;
+  if (!is_sized_by_place_ || !followed_.place()) return std::nullopt;
+  return face_px_of_trunk(kFactor * followed_.place()->width);
 }
 
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
   box_ = elsewhere_ = {};
-  is_by_place_ = false;
+  is_sized_by_place_ = false;
   if (since_trained_ > 0) ++since_trained_;
   if (since_negative_ > 0) ++since_negative_;
   auto person = find(input);
@@ -276,6 +246,7 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   auto background = region_colors(input.image, regions.background[0]);
   const auto right = region_colors(input.image, regions.background[1]);
   background.insert(background.end(), right.begin(), right.end());
+  // Where a shirt's place ends there are other colours: without them it would grow into a road or a wall of its own.
   for (const Box& beside : beside_trunk(trunk_below(teacher.face))) {
     const auto colors = region_colors(input.image, beside);
     background.insert(background.end(), colors.begin(), colors.end());

@@ -11,19 +11,11 @@
 #include "pipeline/person/colors/person_colors.h"
 #include "pipeline/person/marker/marker_tracks.h"
 #include "pipeline/person/tracking/person_image.h"
+#include "pipeline/person/tracking/shirt_regions.h"
 #include "platform/box.h"
 #include "platform/parameters.h"
 
 namespace cgsr::person {
-
-/// Where colours are sampled around a marker on a shirt: below its white margin, nearly as large as a face; the background beside the face as for a face
-/// (Fig. 6.3), where neither shirt nor arms are.
-SamplingRegions sampling_regions(const MarkerSighting& marker);
-
-/// \return the trunk below a face, as wide and high as a shirt without its sleeves is. Ours.
-Box trunk_below(const Box& face);
-/// \return the width of the face above a trunk.
-double face_px_of_trunk(const Box& trunk);
 
 struct ShirtParameters {
   PersonColorParameters colors{};
@@ -58,10 +50,6 @@ struct ShirtParameters {
   }
 };
 
-/// \return where below a head (a face's box) the shirt of the same person may be, down to the image's lower border: what has its colours beside, above or far
-///     below is something else. Generous: a head is turned, a shirt partly covered. Ours (6.3.1, relative position).
-Box shirt_window(const Box& head, int image_height_px);
-
 /// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
 /// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
 /// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
@@ -91,7 +79,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
 
   /// \return the shirt that was found last; empty: none in the last image.
   [[nodiscard]] const Box& box() const { return box_; }
-  /// \return the face's width at the distance of the shirt that was found last, where it was found by its place; nothing: by its blob, or not at all.
+  /// \return the face's width at the distance of the shirt that was found last, by the size of its place; nothing: it was not found, or its blob is the
+  ///     better guide.
   [[nodiscard]] std::optional<double> face_px() const;
   [[nodiscard]] std::size_t people() const { return colors_.people(); }
   [[nodiscard]] bool knows(Label person) const { return colors_.knows(person); }
@@ -134,7 +123,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   Box place_;
   PartPlace followed_;                    // the trunk, in pixels of the labels' image
   std::optional<Label> followed_person_;  // whose
-  bool is_by_place_ = false;              // box_ is the trunk
+  bool is_sized_by_place_ = false;        // how far away the shirt is says the trunk, not its blob
   int since_place_learned_ = 0;
   int missed_ = 0;          // images since then
   bool supposed_ = false;   // the map is of a light that is only supposed

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <array>
+
+#include "pipeline/person/colors/person_colors.h"
+#include "pipeline/person/marker/marker_tracks.h"
+#include "platform/box.h"
+
+namespace cgsr::person {
+
+/// Where colours are sampled around a marker on a shirt: below its white margin, nearly as large as a face; the background beside the face as for a face
+/// (Fig. 6.3), where neither shirt nor arms are.
+SamplingRegions sampling_regions(const MarkerSighting& marker);
+
+/// \return the trunk below a face, as wide and high as a shirt without its sleeves is. Ours.
+Box trunk_below(const Box& face);
+/// \return the width of the face above a trunk of such a width.
+double face_px_of_trunk(double width);
+/// \return what is to the left and right of a trunk, and surely not it.
+std::array<Box, 2> beside_trunk(const Box& trunk);
+
+/// \return where below a head (a face's box) the shirt of the same person may be, down to the image's lower border: what has its colours beside, above or far
+///     below is something else. Generous: a head is turned, a shirt partly covered. Ours (6.3.1, relative position).
+Box shirt_window(const Box& head, int image_height_px);
+
+}  // namespace cgsr::person

@@ -1,0 +1,82 @@
+// A shirt at its place: where its blob is no guide, what that teaches, and what vetoes it.
+
+#include <gtest/gtest.h>
+
+#include "pipeline/person/tracking/person_tracker.h"
+#include "tests/person/drawn_people.h"
+
+namespace cgsr::person {
+namespace {
+
+// A face more, which says where the shirt is that was learned.
+void show_face(PersonTracker& tracker, const Picture& picture) {
+  tracker.update({picture.view()});
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  tracker.update({picture.view(), face_of(1)});
+}
+
+// A pipe of the shirt's colours touches it, and leads along the ceiling: one blob, wider than a shirt is.
+Picture beside_a_pipe() {
+  Picture picture = standing(kRed);
+  picture.fill({270, 0, 20, 240}, kRed);
+  picture.fill({0, 0, 320, 10}, kRed);
+  picture.fill({200, 120, 70, 4}, kRed);
+  return picture;
+}
+
+TEST(ShirtPlace, NamesThePersonWhereTheShirtAndSomethingElseAreOneBlob) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  show_face(tracker, standing(kRed));
+  const Picture picture = beside_a_pipe();
+  for (int image = 0; image < 10; ++image) {
+    const auto sighting = tracker.update({picture.view()});
+    ASSERT_EQ(sighting.person, 1) << image;
+    EXPECT_EQ(sighting.source, PersonSource::kShirt);
+    EXPECT_NEAR(sighting.box.x + sighting.box.width / 2, kShirtBox.x + kShirtBox.width / 2, 12.0);
+    EXPECT_NEAR(sighting.face_px, kFaceBox.width, 4.0);
+  }
+}
+
+// 6.3.1: where no shirt is as wide as a trunk, its place names nobody either.
+TEST(ShirtPlace, VetoesAPlaceOfImplausibleSize) {
+  PersonTrackerParameters parameters;
+  parameters.shirt.max_width = 1.0;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  const Picture picture = standing(kRed);
+  learn(tracker, 1, kRed);
+  show_face(tracker, picture);
+  for (int image = 0; image < 10; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, std::nullopt) << image;
+}
+
+// Somebody turns round: from one side on what is seen is another print.
+TEST(ShirtPlace, LearnsWhatComesIntoViewThere) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  Picture picture = standing(kRed);
+  show_face(tracker, picture);
+  for (int image = 1; image <= 80; ++image) {
+    picture.fill({kShirtBox.x, kShirtBox.y, double(image), kShirtBox.height}, kBlue);
+    tracker.update({picture.view()});
+  }
+  EXPECT_EQ(tracker.update({picture.view()}).person, 1) << "in blue by now";
+}
+
+// A jacket of the colour of the road behind it, and a red shirt below it.
+TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
+  PersonTrackerParameters parameters;
+  parameters.shirt.place.enabled = false;
+  PersonTracker tracker(parameters);
+  Picture picture = standing(kBlue);
+  picture.fill({150, 80, 20, 100}, kRed);
+  picture.fill({0, 100, 115, 140}, kBlue);
+  picture.fill({205, 100, 115, 140}, kBlue);
+  for (int image = 0; image < 20; ++image) tracker.update({picture.view(), face_of(1)});
+  ASSERT_TRUE(tracker.shirts().knows(1));
+  for (int image = 0; image < 3; ++image) tracker.update({picture.view()});
+  EXPECT_NEAR(tracker.shirts().box().width, 20.0, 4.0);
+}
+
+}  // namespace
+}  // namespace cgsr::person
