@@ -91,6 +91,16 @@ TEST(PartPlace, IsKeptWhileThePartIsCovered) {
   EXPECT_LT(distance(*found, part), 3.0);
 }
 
+// Where it is cannot be told from two fifths of it.
+TEST(PartPlace, IsNotSoughtAboutWhatIsLeftOfACoveredPart) {
+  Labels whole, covered;
+  whole.fill(kPlace);
+  covered.fill({kPlace.x, kPlace.y, kPlace.width, 0.4 * kPlace.height});
+  PartPlace place = begun(whole);
+  for (int image = 0; image < 10; ++image) EXPECT_FALSE(place.follow(covered.view(), kPart)) << image;
+  EXPECT_EQ(place.place(), kPlace);
+}
+
 // What is left of its colours beside the place is not the part.
 TEST(PartPlace, IsGivenUpWhereThePartIsGoneForLong) {
   PartPlaceParameters parameters;

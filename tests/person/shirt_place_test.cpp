@@ -50,6 +50,21 @@ TEST(ShirtPlace, VetoesAPlaceOfImplausibleSize) {
   for (int image = 0; image < 10; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, std::nullopt) << image;
 }
 
+// A table hides most of the shirt: who stands behind it is no farther away.
+TEST(ShirtPlace, SaysHowFarAwayACoveredShirtIs) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  show_face(tracker, standing(kRed));
+  Picture picture = standing(kRed);
+  picture.fill({0, 110, 320, 130}, kWall);
+  for (int image = 0; image < 10; ++image) {
+    const auto sighting = tracker.update({picture.view()});
+    ASSERT_EQ(sighting.person, 1) << image;
+    EXPECT_EQ(sighting.source, PersonSource::kShirt);
+    EXPECT_NEAR(sighting.face_px, kFaceBox.width, 4.0);
+  }
+}
+
 // Somebody turns round: from one side on what is seen is another print.
 TEST(ShirtPlace, LearnsWhatComesIntoViewThere) {
   PersonTracker tracker;
