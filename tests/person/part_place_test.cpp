@@ -75,8 +75,8 @@ TEST(PartPlace, FollowsAPartThatComesNearer) {
     found = place.follow(among_others(part).view(), kPart);
   }
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->width / part.width, 1.0, 0.15);
-  EXPECT_GT(found->width, 1.3 * kPlace.width);
+  EXPECT_NEAR(found->width / part.width, 1.0, 0.25);
+  EXPECT_GT(found->width, 1.2 * kPlace.width);
 }
 
 TEST(PartPlace, IsKeptWhileThePartIsCovered) {

@@ -93,7 +93,7 @@ std::optional<Box> PartPlace::follow(const LabelImage& image, std::uint16_t labe
   constexpr double kFollows = 0.2;             // share of a change of size that is followed in an image
   constexpr double kGrows = 0.3;               // of the reach, with each image without it
   constexpr double kLeast = 0.5, kMost = 2.0;  // of the first width
-  constexpr double kSteps = 12.0;              // to each side, at most: what a search costs is bounded
+  constexpr int kSteps = 12;                   // to each side, at most: what a search costs is bounded
   constexpr std::array kScales{1.0, 0.95, 1.05};
   if (!place_ || image.empty()) return std::nullopt;
   const double side = std::sqrt(place_->area());
@@ -101,14 +101,16 @@ std::optional<Box> PartPlace::follow(const LabelImage& image, std::uint16_t labe
   const double margin = reach + 1.1 * strip_of(*place_) + 0.05 * side;
   cell_ = std::max(1, static_cast<int>(std::min(place_->width, place_->height) / kCells));
   count(image, label, grown(*place_, margin, margin));
-  const double step = std::max(double(cell_), reach / kSteps);
+  const int steps = std::min(kSteps, static_cast<int>(reach / cell_));
+  const double step = reach / std::max(1, steps);
   double best = -2.0, best_scale = 1.0;
   Box found = *place_;
   for (const double scale : kScales) {
     const double width = scale * place_->width;
     if (width < kLeast * first_width_ || width > kMost * first_width_) continue;
-    for (double dy = -reach; dy <= reach; dy += step) {
-      for (double dx = -reach; dx <= reach; dx += step) {
+    for (int row = -steps; row <= steps; ++row) {
+      for (int column = -steps; column <= steps; ++column) {
+        const double dx = column * step, dy = row * step;
         const double cost = kFar * (dx * dx + dy * dy) / place_->area() + (scale != 1.0 ? kResized : 0.0);
         const double merit = fill(moved(*place_, dx, dy, scale)).contrast - cost;
         if (merit <= best) continue;
