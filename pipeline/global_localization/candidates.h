@@ -33,7 +33,7 @@ struct Candidate {
   int looked_at = 0;                          ///< images of the turn that the localizer was shown.
   int corrected = 0;                          ///< of these, the ones that corrected it.
   std::array<CorrectedView, kViews> views{};  ///< what came of each image.
-  std::size_t last_view = 0;                  ///< the one that was looked at last.
+  std::size_t last_corrected = 0;             ///< with corrected > 0, the image that corrected it last.
 };
 
 /// \return whether two poses on the floor are that near to each other.

@@ -17,14 +17,6 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr std::size_t kLeastLooks = 6;
 
-// Between two images of the turn the heading is known better than by the odometry alone, and the place less well: no base pivots on a point.
-localization::PoseTrackerParameters for_turn(localization::PoseTrackerParameters tracking,
-                                             const GlobalLocalizerParameters& parameters) {
-  tracking.slip_turn = std::min(tracking.slip_turn, parameters.slip_turn);
-  tracking.drift_m = std::max(tracking.drift_m, parameters.drift_m);
-  return tracking;
-}
-
 }  // namespace
 
 std::string_view to_string(Phase phase) {
@@ -54,11 +46,12 @@ GlobalLocalizer::GlobalLocalizer(const world::Map& map, const geometry::Camera& 
     : X_RC_(X_RC),
       parameters_(parameters),
       localizer_(&localizer),
-      tracker_(localizer, X_RC, for_turn(tracking, parameters)),
+      tracker_(localizer, X_RC, tracking),
       settling_(localizer, X_RC, tracking, parameters),
       turn_(camera, X_RC, parameters.max_drift_m),
       index_(map, localization::working_camera(camera).without_distortion(), X_RC, std::move(places_m)),
-      search_(index_, parameters) {}
+      search_(index_, parameters),
+      fit_(localizer, X_RC, parameters) {}
 
 void GlobalLocalizer::restart() {
   phase_ = Phase::kTurning;
@@ -138,45 +131,68 @@ void GlobalLocalizer::choose_order() {
 
 bool GlobalLocalizer::goes_on(const Candidate& candidate) const {
   if (candidate.looked_at >= looks_) return false;
-  if (candidate.corrected == 0) return candidate.looked_at < parameters_.max_failed;
+  const int most_failed = trial_ == 0 ? parameters_.max_failed : parameters_.max_failed_fitted;
+  if (candidate.corrected == 0) return candidate.looked_at < most_failed;
   return candidate.corrected < parameters_.enough_corrected || candidate.looked_at < looks_to_last_;
 }
 
 void GlobalLocalizer::end_trial(Candidate& candidate) {
   candidate.tried = true;
-  const Pose X_R0R = turn_.X_FR(turn_.keyframes()[candidate.last_view]);
-  if (candidate.corrected > 0) candidate.X_WR = tracker_.now().X_WC * X_RC_.inverse() * X_R0R.inverse();
+  if (candidate.corrected > 0) {
+    candidate.X_WR = candidate.views[candidate.last_corrected].pose.X_WC * X_RC_.inverse() *
+                     turn_.X_FR(turn_.keyframes()[candidate.last_corrected]).inverse();
+  }
   under_trial_ = false;
   localizer_->restart();
   ++trial_;
 }
 
-// Until an image corrects it, a candidate is no better known than the comparison of panoramas knows it.
-void GlobalLocalizer::begin_look(const Candidate& candidate) {
-  const Keyframe& keyframe = turn_.keyframes()[order_[static_cast<std::size_t>(candidate.looked_at)]];
-  if (candidate.corrected > 0) {
-    tracker_.moved(turn_.X_FR(turn_.keyframes()[candidate.last_view]).inverse() * turn_.X_FR(keyframe));
-  } else {
-    localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
-    sigmas.x_m = sigmas.y_m = parameters_.place_sigma_m;
-    sigmas.heading_rad = parameters_.heading_sigma_deg * kDegree;
-    tracker_.start(localization::prior_at(candidate.X_WR * turn_.X_FR(keyframe) * X_RC_, sigmas));
+// Whether all images together have told where the candidate is.
+bool GlobalLocalizer::fit(const Candidate& candidate, WorkBudget& budget) {
+  if (!std::exchange(under_trial_, true)) {
+    fit_.begin(candidate.X_WR);
+    fitted_ = false;
   }
-  tracker_.pitched(keyframe.motion.pitch_rad, keyframe.motion.axle_height_m);
-  looking_ = true;
+  if (!fitted_) fitted_ = fit_.go_on(turn_, budget);
+  return fitted_;
+}
+
+// Beside an image that corrected it the candidate is where that says; before, where the fit says; and where that leads nowhere, where its panorama does.
+localization::Prior GlobalLocalizer::prior_of_look(const Candidate& candidate) const {
+  const auto prior = [&](const Pose& X_WR, double sigma_m, double sigma_deg) {
+    localization::PriorSigmas sigmas = localization::PriorSigmas::floor();
+    sigmas.x_m = sigmas.y_m = sigma_m;
+    sigmas.heading_rad = sigma_deg * kDegree;
+    return localization::prior_at(X_WR * X_RC_, sigmas);
+  };
+  const Keyframe& keyframe = turn_.keyframes()[order_[static_cast<std::size_t>(candidate.looked_at)]];
+  const Pose X_WR = fit_.X_WR(turn_, keyframe);
+  if (candidate.corrected > 0) {
+    const Pose X_WR_fitted = fit_.X_WR(turn_, turn_.keyframes()[candidate.last_corrected]);
+    const Pose X_WR_corrected = candidate.views[candidate.last_corrected].pose.X_WC * X_RC_.inverse();
+    return prior(X_WR_corrected * X_WR_fitted.inverse() * X_WR, parameters_.corrected_sigma_m,
+                 parameters_.corrected_sigma_deg);
+  }
+  if (candidate.looked_at < parameters_.max_failed_fitted)
+    return prior(X_WR, parameters_.fitted_sigma_m, parameters_.fitted_sigma_deg);
+  return prior(candidate.X_WR * turn_.X_FR(keyframe), parameters_.place_sigma_m, parameters_.heading_sigma_deg);
 }
 
 // Each look takes as many images as the localizer searches.
 void GlobalLocalizer::look_at_next(Candidate& candidate, WorkBudget& budget, const std::uint8_t* mask) {
-  if (!looking_) begin_look(candidate);
   const std::size_t view = order_[static_cast<std::size_t>(candidate.looked_at)];
-  const localization::Correction& correction = tracker_.see(turn_.keyframes()[view].image, budget, mask).correction;
+  const Keyframe& keyframe = turn_.keyframes()[view];
+  if (!std::exchange(looking_, true)) {
+    tracker_.start(prior_of_look(candidate));
+    tracker_.pitched(keyframe.motion.pitch_rad, keyframe.motion.axle_height_m);
+  }
+  const localization::Correction& correction = tracker_.see(keyframe.image, budget, mask).correction;
   if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return;
   looking_ = false;
-  candidate.last_view = view;
   ++candidate.looked_at;
   if (correction.corrected) {
     ++candidate.corrected;
+    candidate.last_corrected = view;
     candidate.views[view] = {correction.matches, {correction.X_WC, correction.covariance}};
   }
 }
@@ -185,7 +201,7 @@ bool GlobalLocalizer::try_candidates(WorkBudget& budget, const std::uint8_t* mas
   while (trial_ < search_.candidates().size()) {
     Candidate& candidate = search_.candidates()[trial_];
     if (!under_trial_ && !worth_trying(candidate)) return true;
-    under_trial_ = true;
+    if (!fit(candidate, budget)) return false;
     if (goes_on(candidate)) {
       look_at_next(candidate, budget, mask);
       return false;  // edges are perceived once an image

@@ -17,6 +17,7 @@
 #include "pipeline/global_localization/place_index.h"
 #include "pipeline/global_localization/settling.h"
 #include "pipeline/global_localization/turn.h"
+#include "pipeline/global_localization/turn_fit.h"
 #include "pipeline/localization/localizer.h"
 #include "pipeline/localization/pose_tracker.h"
 #include "pipeline/world/map.h"
@@ -26,8 +27,8 @@
 namespace cgsr::global_localization {
 
 /// The pose of a robot that was put down anywhere in its map, without a marker or a last run. While it turns on the spot once, twelve images make a
-/// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are handed to the
-/// localizer of chapter 4, with the images of the turn and the odometry between them. A place is the robot's when the localizer corrects it in several of
+/// panorama of edges; that is compared with the map's own panoramas from a grid of places, in every heading; the most alike ones are fitted
+/// to all images of the turn together and handed to the localizer of chapter 4, which looks at these images one by one. A place is the robot's when the localizer corrects it in several of
 /// these images, and no other place that was tried in more than half as large a share of them; an image of now confirms it.
 /// Ours: the dissertation starts from a known pose (4.1).
 ///
@@ -66,7 +67,8 @@ class GlobalLocalizer {
   bool try_candidates(WorkBudget& budget, const std::uint8_t* mask);
   [[nodiscard]] bool worth_trying(const Candidate& candidate) const;
   void choose_order();
-  void begin_look(const Candidate& candidate);
+  bool fit(const Candidate& candidate, WorkBudget& budget);
+  [[nodiscard]] localization::Prior prior_of_look(const Candidate& candidate) const;
   [[nodiscard]] bool goes_on(const Candidate& candidate) const;
   void look_at_next(Candidate& candidate, WorkBudget& budget, const std::uint8_t* mask);
   void end_trial(Candidate& candidate);
@@ -74,11 +76,12 @@ class GlobalLocalizer {
   geometry::Pose X_RC_;
   GlobalLocalizerParameters parameters_;
   localization::Localizer* localizer_;
-  localization::PoseTracker tracker_;  ///< of a candidate, over the images of the turn.
+  localization::PoseTracker tracker_;  ///< of a candidate, at an image of the turn.
   Settling settling_;                  ///< of the best one, over the images that come after it.
   Turn turn_;
   PlaceIndex index_;
   CandidateSearch search_;
+  TurnFit fit_;  ///< of the candidate under trial.
   Panorama seen_;
   std::size_t trial_ = 0;                        ///< candidate under trial.
   std::array<std::size_t, kKeyframes> order_{};  ///< of the images of the turn in every trial.
@@ -88,6 +91,7 @@ class GlobalLocalizer {
   bool closed_ = false;    ///< the turn is.
   bool gathered_ = false;  ///< seen_ is.
   bool under_trial_ = false;
+  bool fitted_ = false;   ///< that candidate is.
   bool looking_ = false;  ///< at an image of the turn, since an earlier update.
 };
 

@@ -54,7 +54,6 @@ Turn::Turn(const geometry::Camera& camera, const Pose& X_RC, double max_drift_m)
   const auto pixels = static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
   for (Keyframe& keyframe : keyframes_) {
     keyframe.pixels.reserve(pixels * kBytes);
-    keyframe.edges.reserve(localization::Perception::kMostSegments);
   }
   turned_.reserve(localization::Perception::kMostSegments);
 }
@@ -121,7 +120,7 @@ void Turn::take(const ImageView& image, const Motion& motion, const std::uint8_t
   keyframe.edges_px = 0.0F;
   if (taken_ == 1) closed_ = 0;
   if (perception_.perceive(image, mask) != localization::Reason::kNone) return;
-  keyframe.edges.assign(perception_.edges().edges().begin(), perception_.edges().edges().end());
+  keyframe.edges = perception_.edges();  // of one capacity: allocates nothing
   keyframe.edges_px = perception_.edges().weighted_length();
   const auto index = static_cast<std::size_t>(taken_) - 1;
   if (index < kClosing && keyframe.edges_px > keyframes_[closed_].edges_px) closed_ = index;
@@ -144,7 +143,7 @@ float Turn::likeness_turned(const Keyframe& first, double turn_rad) {
   const Eigen::AlignedBox2f image(Eigen::Vector2f::Zero(), Eigen::Vector2f(static_cast<float>(camera.width_px - 1),
                                                                            static_cast<float>(camera.height_px - 1)));
   turned_.clear();
-  for (const localization::PerceivedEdge& edge : first.edges) {
+  for (const localization::PerceivedEdge& edge : first.edges.edges()) {
     if (edge.half_length < kShort_px) continue;
     const auto from = there(edge.middle - edge.half_length * edge.direction);
     const auto to = there(edge.middle + edge.half_length * edge.direction);
@@ -201,7 +200,7 @@ void Turn::gather(Panorama& panorama) const {
       return R * Eigen::Vector3d((static_cast<double>(pixel.x()) - camera.cx_px) / camera.fx_px,
                                  (static_cast<double>(pixel.y()) - camera.cy_px) / camera.fy_px, 1.0);
     };
-    for (const localization::PerceivedEdge& edge : keyframe.edges) {
+    for (const localization::PerceivedEdge& edge : keyframe.edges.edges()) {
       const Eigen::Vector2f half = edge.half_length * edge.direction;
       panorama.add(ray(edge.middle - half), ray(edge.middle + half), static_cast<double>(edge.information_weight),
                    sector);

@@ -15,6 +15,7 @@
 #include "pipeline/localization/direction_field.h"
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/perceive.h"
+#include "pipeline/localization/segment_table.h"
 #include "platform/image_view.h"
 
 namespace cgsr::global_localization {
@@ -32,7 +33,7 @@ struct Keyframe {
   Motion motion;
   double turned_rad = 0.0;  ///< since the first image, to the left.
   float edges_px = 0.0F;    ///< how much of edges it shows, each by how much it tells.
-  std::vector<localization::PerceivedEdge> edges;
+  localization::SegmentTable edges{localization::Perception::kMostSegments};
   std::vector<std::uint8_t> pixels;
 };
 

@@ -238,14 +238,28 @@ void Alternation::judge_by_part(std::span<const Match> matches, const SegmentTab
   estimate.agreement_in_the_worst = by_part_.in_the_worst(kWorstShare);
 }
 
+MatchingRules Alternation::rules_within(float radius_px) const {
+  MatchingRules rules;
+  rules.radius_px = radius_px;
+  rules.angle_rad = static_cast<float>(parameters_.max_match_angle_deg * std::numbers::pi / 180.0);
+  return rules;
+}
+
+std::span<const LineDistance> Alternation::distances_from(const geometry::Pose& X_WC, const SegmentTable& perceived,
+                                                          float radius_px) {
+  look(X_WC);
+  view_.project(X_WC, camera_);
+  ++rounds_;
+  gather(matcher_.match(view_.projected(), perceived, rules_within(radius_px)), perceived);
+  return lines_;
+}
+
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
                              const AlternateOptions& options, WorkBudget& budget) {
   Estimate estimate;
   estimate.solution.X_WC = start;
   const auto least = static_cast<float>(parameters_.min_match_radius_px);
-  MatchingRules rules;
-  rules.radius_px = std::max(options.radius_px, least);
-  rules.angle_rad = static_cast<float>(parameters_.max_match_angle_deg * std::numbers::pi / 180.0);
+  MatchingRules rules = rules_within(std::max(options.radius_px, least));
   SolverOptions solver;
   solver.paper = parameters_.method == Method::kPaper;
   solver.steps = 2;

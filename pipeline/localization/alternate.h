@@ -86,6 +86,9 @@ class Alternation {
   [[nodiscard]] bool must_look(const geometry::Pose& X_WC);
   void project(const geometry::Pose& X_WC) { view_.project(X_WC, camera_); }
   [[nodiscard]] const ExpectedView& view() const { return view_; }
+  /// Localizer::distances_from().
+  std::span<const LineDistance> distances_from(const geometry::Pose& X_WC, const SegmentTable& perceived,
+                                               float radius_px);
 
   /// The square of the image's mean motion, px^2, for a step: step^T M step. From the pieces projected last; without any, from a wall 3 m away.
   [[nodiscard]] geometry::Matrix6d motion_metric(const geometry::Pose& X_WC) const;
@@ -96,6 +99,7 @@ class Alternation {
   void reset_counts() { looks_ = rounds_ = 0; }
 
  private:
+  [[nodiscard]] MatchingRules rules_within(float radius_px) const;
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
   void gather_ends(const ProjectedPiece& piece, const PerceivedEdge& edge, LineDistance end);
   [[nodiscard]] bool is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& metric) const;

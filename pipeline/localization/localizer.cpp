@@ -115,6 +115,15 @@ bool Localizer::searching() const {
   return state_->searching();
 }
 
+const geometry::Camera& Localizer::camera() const {
+  return state_->perception.camera();
+}
+
+std::span<const LineDistance> Localizer::distances_from(const geometry::Pose& X_WC, const SegmentTable& perceived,
+                                                        float radius_px) {
+  return state_->alternation.distances_from(X_WC, perceived, radius_px);
+}
+
 void Localizer::State::judge(const Estimate& estimate, const std::optional<Standing>& standing,
                              Correction& answer) const {
   const geometry::Matrix6d covariance = covariance_in_map(estimate);

@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "pipeline/geometry/camera.h"
 #include "pipeline/localization/correction.h"
 #include "pipeline/localization/localizer_parameters.h"
+#include "pipeline/localization/segment_table.h"
+#include "pipeline/localization/solve.h"
 #include "pipeline/render/expectation.h"
 #include "pipeline/world/map.h"
 #include "platform/image_view.h"
@@ -47,6 +50,14 @@ class Localizer {
   void restart();
 
   [[nodiscard]] bool searching() const;
+
+  /// Camera of perceived edges: without lens, in the working size.
+  [[nodiscard]] const geometry::Camera& camera() const;
+
+  /// Of one image, for who solves for the poses of several together: the map looked at from a pose, matched with what was perceived no farther off than
+  /// radius_px. Takes a look and a round (work.h), which the caller asks a budget for; not while a search is under way. \return valid until the next call.
+  std::span<const LineDistance> distances_from(const geometry::Pose& X_WC, const SegmentTable& perceived,
+                                               float radius_px);
 
  private:
   struct State;
