@@ -165,17 +165,19 @@ localization::Prior GlobalLocalizer::prior_of_look(const Candidate& candidate) c
     sigmas.heading_rad = sigma_deg * kDegree;
     return localization::prior_at(X_WR * X_RC_, sigmas);
   };
+  const GlobalLocalizerParameters& p = parameters_;
   const Keyframe& keyframe = turn_.keyframes()[order_[static_cast<std::size_t>(candidate.looked_at)]];
-  const Pose X_WR = fit_.X_WR(turn_, keyframe);
   if (candidate.corrected > 0) {
-    const Pose X_WR_fitted = fit_.X_WR(turn_, turn_.keyframes()[candidate.last_corrected]);
-    const Pose X_WR_corrected = candidate.views[candidate.last_corrected].pose.X_WC * X_RC_.inverse();
-    return prior(X_WR_corrected * X_WR_fitted.inverse() * X_WR, parameters_.corrected_sigma_m,
-                 parameters_.corrected_sigma_deg);
+    const Keyframe& last = turn_.keyframes()[candidate.last_corrected];
+    const Pose X_WR_last = candidate.views[candidate.last_corrected].pose.X_WC * X_RC_.inverse();
+    if (!follows_fit_)
+      return prior(X_WR_last * turn_.X_FR(last).inverse() * turn_.X_FR(keyframe), p.fitted_sigma_m, p.fitted_sigma_deg);
+    return prior(X_WR_last * fit_.X_WR(turn_, last).inverse() * fit_.X_WR(turn_, keyframe), p.corrected_sigma_m,
+                 p.corrected_sigma_deg);
   }
-  if (candidate.looked_at < parameters_.max_failed_fitted)
-    return prior(X_WR, parameters_.fitted_sigma_m, parameters_.fitted_sigma_deg);
-  return prior(candidate.X_WR * turn_.X_FR(keyframe), parameters_.place_sigma_m, parameters_.heading_sigma_deg);
+  if (candidate.looked_at < p.max_failed_fitted)
+    return prior(fit_.X_WR(turn_, keyframe), p.fitted_sigma_m, p.fitted_sigma_deg);
+  return prior(candidate.X_WR * turn_.X_FR(keyframe), p.place_sigma_m, p.heading_sigma_deg);
 }
 
 // Each look takes as many images as the localizer searches.
@@ -189,12 +191,12 @@ void GlobalLocalizer::look_at_next(Candidate& candidate, WorkBudget& budget, con
   const localization::Correction& correction = tracker_.see(keyframe.image, budget, mask).correction;
   if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return;
   looking_ = false;
-  ++candidate.looked_at;
   if (correction.corrected) {
-    ++candidate.corrected;
+    if (candidate.corrected++ == 0) follows_fit_ = candidate.looked_at < parameters_.max_failed_fitted;
     candidate.last_corrected = view;
     candidate.views[view] = {correction.matches, {correction.X_WC, correction.covariance}};
   }
+  ++candidate.looked_at;
 }
 
 bool GlobalLocalizer::try_candidates(WorkBudget& budget, const std::uint8_t* mask) {

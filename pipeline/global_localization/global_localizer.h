@@ -91,8 +91,9 @@ class GlobalLocalizer {
   bool closed_ = false;    ///< the turn is.
   bool gathered_ = false;  ///< seen_ is.
   bool under_trial_ = false;
-  bool fitted_ = false;   ///< that candidate is.
-  bool looking_ = false;  ///< at an image of the turn, since an earlier update.
+  bool fitted_ = false;       ///< that candidate is.
+  bool follows_fit_ = false;  ///< an image corrected it from where the fit has it.
+  bool looking_ = false;      ///< at an image of the turn, since an earlier update.
 };
 
 }  // namespace cgsr::global_localization

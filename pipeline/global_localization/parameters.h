@@ -15,7 +15,7 @@ struct GlobalLocalizerParameters {
   double same_deg = 10.0;          ///< candidates that differ by no more, and are neighbours on the grid, are one.
   double place_sigma_m = 0.08;     ///< of a candidate's place along x and y, as the comparison of panoramas knows it.
   double heading_sigma_deg = 2.5;  ///< of its heading.
-  /// How far the odometry of a turn may be off from its first image to its last one, once that has closed it; evenly in between.
+  /// How far the odometry may be off at the end of a whole turn, closed by its last image; evenly until then.
   double drift_sigma_m = 0.03;
   double drift_sigma_deg = 5.0;
   double fitted_sigma_m = 0.02;      ///< of the place at an image, fitted to all images of the turn together,

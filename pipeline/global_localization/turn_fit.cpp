@@ -85,15 +85,21 @@ void TurnFit::add(const Turn& turn, const Keyframe& keyframe) {
   const double part = keyframe.turned_rad / kWholeTurn;
   const Pose X_WR_here = X_WR(turn, keyframe);
   const Pose X_WC = X_WR_here * X_RC_;
-  const Eigen::Vector3d by_heading = Eigen::Vector3d::UnitZ().cross(X_WC.translation() - X_WR_here.translation());
+  // A turn at the first image moves the robot too where it does not pivot on its middle; one of its odometry does not.
+  Eigen::Vector3d arm = X_WC.translation() - X_WR_here.translation();
+  const Eigen::Vector3d by_turn_here = Eigen::Vector3d::UnitZ().cross(arm);
+  arm = X_WC.translation() - X_WR_begun_.translation();
+  arm.head<2>() -= off_.head<2>() + part * off_.segment<2>(3);
+  const Eigen::Vector3d by_turn_at_first = Eigen::Vector3d::UnitZ().cross(arm);
   const auto lines = localizer_->distances_from(X_WC, keyframe.edges, std::max(kLeastRadius_px, radius_px()));
   for (const localization::LineDistance& line : lines) {
     double distance_px = 0.0;
     Eigen::Matrix<double, 1, 6> by_camera;
     if (!localization::distance_of(line, X_WC, localizer_->camera(), distance_px, by_camera)) continue;
     Vector6d by_off;
-    by_off.head<3>() << by_camera(0), by_camera(1), by_camera.head<3>().dot(by_heading) + by_camera(5);
-    by_off.tail<3>() = part * by_off.head<3>();
+    const auto by_turn = [&](const Eigen::Vector3d& moves) { return by_camera.head<3>().dot(moves) + by_camera(5); };
+    by_off << by_camera(0), by_camera(1), by_turn(by_turn_at_first), part * by_camera(0), part * by_camera(1),
+        part * by_turn(by_turn_here);
     const double reach_px = std::max(kRobustSigmas * line.sigma_px, kRobustShare * static_cast<double>(radius_px()));
     const double in_reach = distance_px / reach_px;
     const double weight = kIndependent * line.weight / (line.sigma_px * line.sigma_px * (1.0 + in_reach * in_reach));

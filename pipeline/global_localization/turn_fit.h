@@ -12,7 +12,7 @@ namespace cgsr::global_localization {
 
 /// The robot's place and heading out of all images of a turn together. One image hardly tells a step aside from a turn; images of all around do, so that one
 /// start is enough where one image alone needs many. Expectation and maximisation as for one image (4.1, Eq. 4.1 to 4.5) over six unknowns: place and heading
-/// at the first image, and how far the odometry is off in each from there to the last one.
+/// at the first image, and how far the odometry is off in each at the end of a whole turn, evenly from there.
 ///
 /// Allocates nothing.
 class TurnFit {
