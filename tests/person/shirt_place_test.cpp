@@ -93,5 +93,18 @@ TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
   EXPECT_NEAR(tracker.shirts().box().width, 20.0, 4.0);
 }
 
+// The labels of an image are those of the people who were known when its map was made.
+TEST(ShirtPlace, IsTheSamePersonsWhenAnotherIsForgotten) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kBlue);
+  const Picture picture = standing(kBlue);
+  for (int image = 0; image < 3 || !tracker.face_is_due(); ++image) tracker.update({picture.view()});
+  tracker.forget(1);
+  for (int image = 0; image < 4; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, 2) << image;
+}
+
 }  // namespace
 }  // namespace cgsr::person

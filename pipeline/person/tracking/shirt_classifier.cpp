@@ -23,6 +23,10 @@ Box in_camera(const Blob& blob, int left = 0, int top = 0) {
           blob.box.height * kFactor};
 }
 
+Box in_labels(const Box& box) {
+  return {box.x / kFactor, box.y / kFactor, box.width / kFactor, box.height / kFactor};
+}
+
 double camera_area(const Blob& blob) {
   return double(blob.area_px) * kFactor * kFactor;
 }
@@ -77,6 +81,7 @@ bool ShirtClassifier::prepare() {
   std::vector<color::Light> lights;
   for (const Label person : colors_.order()) lights.push_back(light_.of(person).value_or(color::Light{1.0, 1.0, 1.0}));
   colors_.make_map(lights, map_);
+  order_ = colors_.order();
   labels_.set(ColorPart::kShirt, map_);
   map_is_due_ = false;
   return true;
@@ -92,12 +97,10 @@ bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
 bool ShirtClassifier::find_below(const PersonHead& head, int image_height_px) {
   constexpr double kLowest = 1.6;  // of the shirt's upper edge below the chin, in sides of the face
   const LabelImage image = labels_.of(ColorPart::kShirt);
-  const auto order = colors_.order();
-  const Box window = shirt_window(head.box, image_height_px);
-  const Box small{window.x / kFactor, window.y / kFactor, window.width / kFactor, window.height / kFactor};
+  const Box small = in_labels(shirt_window(head.box, image_height_px));
   const auto [left, top] = image.corner_of(small);
-  for (const Blob& blob : blobs_.largest(image.within(small), static_cast<std::uint16_t>(order.size()))) {
-    if (order[blob.label - std::size_t{1}] != head.person) continue;
+  for (const Blob& blob : blobs_.largest(image.within(small), static_cast<std::uint16_t>(order_.size()))) {
+    if (order_[blob.label - std::size_t{1}] != head.person) continue;
     const Box box = in_camera(blob, left, top);
     const bool hangs = box.y <= head.box.y + (1.0 + kLowest) * head.box.height;
     if (!hangs || !is_plausible(box, camera_area(blob))) return false;
@@ -112,30 +115,28 @@ std::optional<Label> ShirtClassifier::find(const PersonImage& input) {
   if (colors_.people() == 0 || image.empty()) return std::nullopt;
   const bool head = input.head && colors_.knows(input.head->person);
   if (head && find_below(*input.head, input.image.height_px)) return input.head->person;
-  const auto order = colors_.order();
   const Blob* largest = nullptr;
-  for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order.size()))) {
+  for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order_.size()))) {
     const Box box = in_camera(blob);
-    if (!is_plausible(box, camera_area(blob))) continue;
-    const Label person = order[blob.label - std::size_t{1}];
+    const Label person = order_[blob.label - std::size_t{1}];
+    if (!colors_.knows(person) || !is_plausible(box, camera_area(blob))) continue;
     if (head && person == input.head->person) {
       elsewhere_ = box;
       continue;
     }
     const auto rank = [&](const Blob& one) {
-      return std::pair(input.interest && order[one.label - std::size_t{1}] == *input.interest, one.area_px);
+      return std::pair(input.interest && order_[one.label - std::size_t{1}] == *input.interest, one.area_px);
     };
     if (largest != nullptr && rank(blob) <= rank(*largest)) continue;
     largest = &blob;
     box_ = box;
   }
   if (largest == nullptr) return std::nullopt;
-  return order[largest->label - std::size_t{1}];
+  return order_[largest->label - std::size_t{1}];
 }
 
 std::uint16_t ShirtClassifier::label_of(Label person) const {
-  const auto order = colors_.order();
-  return static_cast<std::uint16_t>(std::ranges::find(order, person) - order.begin() + 1);
+  return static_cast<std::uint16_t>(std::ranges::find(order_, person) - order_.begin() + 1);
 }
 
 // Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
@@ -177,9 +178,7 @@ void ShirtClassifier::follow_from(const Teacher& teacher) {
   followed_person_ = teacher.person;
   since_place_learned_ = 0;
   if (!followed_person_ || !colors_.knows(*followed_person_)) return;
-  const Box trunk = trunk_below(teacher.face);
-  followed_.begin(labels_.of(ColorPart::kShirt), label_of(*followed_person_),
-                  {trunk.x / kFactor, trunk.y / kFactor, trunk.width / kFactor, trunk.height / kFactor});
+  followed_.begin(labels_.of(ColorPart::kShirt), label_of(*followed_person_), in_labels(trunk_below(teacher.face)));
 }
 
 std::optional<double> ShirtClassifier::face_px() const {

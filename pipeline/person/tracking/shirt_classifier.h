@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "pipeline/person/classifier.h"
 #include "pipeline/person/colors/blobs.h"
@@ -111,7 +112,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   PersonColors colors_;
   PartLight light_;
   imaging::LabelTable map_;
-  bool map_is_due_ = true;  // something was learned since it was made, or the light has changed
+  std::vector<Label> order_;  // the people by their labels in the map; some may be forgotten since
+  bool map_is_due_ = true;    // something was learned since it was made, or the light has changed
   BlobFinder blobs_;
   PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
   std::optional<Box> last_face_;  // of a recognised person, or where it would be by the marker
