@@ -140,14 +140,17 @@ std::uint16_t ShirtClassifier::label_of(Label person) const {
 }
 
 // Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
-// far away it is; how large it was where it was followed does.
+// far away it is; how large it was where it was followed does. Beside a passer-by it is followed on; where the head of somebody else is known, that one is
+// named.
 std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, std::optional<Label> by_blob) {
-  if (input.face || input.marker || !followed_person_) return by_blob;
+  const auto teacher = teacher_of(input);
+  if ((teacher && !is_passer_by(*teacher)) || !followed_person_) return by_blob;
   if (!colors_.knows(*followed_person_) || (input.interest && input.interest != followed_person_)) {
     followed_.end();
     return by_blob;
   }
   const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
+  if (input.head && input.head->person != followed_person_) return by_blob;
   if (!place) {
     is_sized_by_place_ = followed_.place() && by_blob == followed_person_;
     return by_blob;
@@ -173,7 +176,16 @@ void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk)
   map_is_due_ = true;
 }
 
+// Somebody else, who does not stand where the shirt is followed.
+bool ShirtClassifier::is_passer_by(const Teacher& teacher) const {
+  constexpr double kCovers = 0.5;  // of the place
+  const auto& place = followed_.place();
+  if (!place || teacher.person == followed_person_) return false;
+  return intersection(in_labels(trunk_below(teacher.face)), *place).area() <= kCovers * place->area();
+}
+
 void ShirtClassifier::follow_from(const Teacher& teacher) {
+  if (is_passer_by(teacher)) return;
   followed_.end();
   followed_person_ = teacher.person;
   since_place_learned_ = 0;

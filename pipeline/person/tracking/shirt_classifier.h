@@ -101,6 +101,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
   std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
+  [[nodiscard]] bool is_passer_by(const Teacher& teacher) const;
   void follow_from(const Teacher& teacher);
   void learn_at_place(const PersonImage& input, const Box& trunk);
   [[nodiscard]] std::uint16_t label_of(Label person) const;
