@@ -157,7 +157,9 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
   }
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
   if (!is_plausible(trunk, trunk.area())) return by_blob;
-  learn_at_place(input, trunk);
+  const bool supposed = supposed_ && followed_person_ == person_;
+  if (supposed && overlap(trunk, place_) < kSamePlace) return by_blob;
+  if (!supposed) learn_at_place(input, trunk);
   if (by_blob == followed_person_ && overlap(box_, trunk) >= kSameSize) return by_blob;
   box_ = trunk;
   is_sized_by_place_ = true;
