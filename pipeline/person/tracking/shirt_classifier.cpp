@@ -50,6 +50,16 @@ std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
   return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
 }
 
+// Of a shirt nearby no more is learned at a time than of one far away, or a single image would outweigh what its face taught.
+std::vector<imaging::Rgb> thinned(std::vector<imaging::Rgb> samples) {
+  constexpr std::size_t kMost = 800;
+  const std::size_t stride = (samples.size() + kMost - 1) / kMost;
+  if (stride <= 1) return samples;
+  std::vector<imaging::Rgb> some;
+  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
+  return some;
+}
+
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
 bool is_facing(const MarkerSighting& marker) {
   constexpr double kMinWidth = 0.7;  // of its height: turned by less than 45 degrees
@@ -173,7 +183,7 @@ void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk)
   if (++since_place_learned_ < parameters_.images_between || followed_.contrast() < kMinContrast) return;
   const Box middle{trunk.x + kMargin * trunk.width, trunk.y + kMargin * trunk.height,
                    (1.0 - 2.0 * kMargin) * trunk.width, (1.0 - 2.0 * kMargin) * trunk.height};
-  colors_.add(*followed_person_, region_colors(input.image, middle), {}, light_.of(*followed_person_));
+  colors_.add(*followed_person_, thinned(region_colors(input.image, middle)), {}, light_.of(*followed_person_));
   since_place_learned_ = 0;
   map_is_due_ = true;
 }
