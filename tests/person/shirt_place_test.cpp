@@ -1,5 +1,7 @@
 // A shirt at its place: where its blob is no guide, what that teaches, and what vetoes it.
 
+#include <optional>
+
 #include <gtest/gtest.h>
 
 #include "pipeline/person/tracking/person_tracker.h"
@@ -91,6 +93,53 @@ TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
   ASSERT_TRUE(tracker.shirts().knows(1));
   for (int image = 0; image < 3; ++image) tracker.update({picture.view()});
   EXPECT_NEAR(tracker.shirts().box().width, 20.0, 4.0);
+}
+
+// A stranger beside the person leaves him his place; one who stands there takes it.
+TEST(ShirtPlace, IsKeptWhereAStrangerPassesBesideIt) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  for (const bool there : {false, true}) {
+    PersonTracker tracker(parameters);
+    learn(tracker, 1, kRed);
+    show_face(tracker, standing(kRed));
+    const Picture picture = beside_a_pipe();
+    FaceSighting stranger = face_of(std::nullopt);
+    if (!there) stranger.box.x = 20.0;
+    while (!tracker.face_is_due()) tracker.update({picture.view()});
+    tracker.update({picture.view(), stranger});
+    ASSERT_EQ(tracker.update({picture.view()}).person, 1);
+    EXPECT_EQ(tracker.shirts().box().width > 1.5 * kShirtBox.width, there) << "the blob with the pipe, or the place";
+  }
+}
+
+// A marker that is turned away says nothing about the place.
+TEST(ShirtPlace, IsFollowedWhereAMarkerIsTurnedAway) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  show_face(tracker, standing(kRed));
+  const Picture picture = beside_a_pipe();
+  MarkerSighting turned;
+  turned.box = {150, 90, 10, 20};
+  turned.face = kFaceBox;
+  turned.person = 1;
+  tracker.update({.image = picture.view(), .marker = turned});
+  EXPECT_NEAR(tracker.shirts().box().width, 2.2 * kFaceBox.width, 12.0);
+}
+
+// The labels of an image are those of the people who were known when its map was made.
+TEST(ShirtPlace, IsTheSamePersonsWhenAnotherIsForgotten) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kBlue);
+  const Picture picture = standing(kBlue);
+  for (int image = 0; image < 3 || !tracker.face_is_due(); ++image) tracker.update({picture.view()});
+  tracker.forget(1);
+  for (int image = 0; image < 4; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, 2) << image;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct PartPlaceParameters {
     visit.flag("enabled", self.enabled,
                "Whether a shirt is followed from image to image at its place and of its size, where no blob of its "
                "colours is there alone.");
-    visit.number("reach", self.reach, Range{0.05, 2.0}, "",
+    visit.number("reach", self.reach, Range{0.05, 1.3}, "",
                  "How far it may move from one image to the next, in its sides; farther after images without it.");
     visit.number(
         "min_of_usual", self.min_of_usual, Range{0.0, 1.0}, "",

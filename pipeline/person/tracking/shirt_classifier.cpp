@@ -23,6 +23,10 @@ Box in_camera(const Blob& blob, int left = 0, int top = 0) {
           blob.box.height * kFactor};
 }
 
+Box in_labels(const Box& box) {
+  return {box.x / kFactor, box.y / kFactor, box.width / kFactor, box.height / kFactor};
+}
+
 double camera_area(const Blob& blob) {
   return double(blob.area_px) * kFactor * kFactor;
 }
@@ -44,6 +48,16 @@ std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
   if (!middle || (!left && !right)) return std::nullopt;
   if (!left || !right) return PartColors{*middle, left ? *left : *right};
   return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
+}
+
+// Of a shirt nearby no more is learned at a time than of one far away, or a single image would outweigh what its face taught.
+std::vector<imaging::Rgb> thinned(std::vector<imaging::Rgb> samples) {
+  constexpr std::size_t kMost = 800;
+  const std::size_t stride = (samples.size() + kMost - 1) / kMost;
+  if (stride <= 1) return samples;
+  std::vector<imaging::Rgb> some;
+  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
+  return some;
 }
 
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
@@ -77,6 +91,7 @@ bool ShirtClassifier::prepare() {
   std::vector<color::Light> lights;
   for (const Label person : colors_.order()) lights.push_back(light_.of(person).value_or(color::Light{1.0, 1.0, 1.0}));
   colors_.make_map(lights, map_);
+  order_ = colors_.order();
   labels_.set(ColorPart::kShirt, map_);
   map_is_due_ = false;
   return true;
@@ -92,12 +107,10 @@ bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
 bool ShirtClassifier::find_below(const PersonHead& head, int image_height_px) {
   constexpr double kLowest = 1.6;  // of the shirt's upper edge below the chin, in sides of the face
   const LabelImage image = labels_.of(ColorPart::kShirt);
-  const auto order = colors_.order();
-  const Box window = shirt_window(head.box, image_height_px);
-  const Box small{window.x / kFactor, window.y / kFactor, window.width / kFactor, window.height / kFactor};
+  const Box small = in_labels(shirt_window(head.box, image_height_px));
   const auto [left, top] = image.corner_of(small);
-  for (const Blob& blob : blobs_.largest(image.within(small), static_cast<std::uint16_t>(order.size()))) {
-    if (order[blob.label - std::size_t{1}] != head.person) continue;
+  for (const Blob& blob : blobs_.largest(image.within(small), static_cast<std::uint16_t>(order_.size()))) {
+    if (order_[blob.label - std::size_t{1}] != head.person) continue;
     const Box box = in_camera(blob, left, top);
     const bool hangs = box.y <= head.box.y + (1.0 + kLowest) * head.box.height;
     if (!hangs || !is_plausible(box, camera_area(blob))) return false;
@@ -112,48 +125,51 @@ std::optional<Label> ShirtClassifier::find(const PersonImage& input) {
   if (colors_.people() == 0 || image.empty()) return std::nullopt;
   const bool head = input.head && colors_.knows(input.head->person);
   if (head && find_below(*input.head, input.image.height_px)) return input.head->person;
-  const auto order = colors_.order();
   const Blob* largest = nullptr;
-  for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order.size()))) {
+  for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order_.size()))) {
     const Box box = in_camera(blob);
-    if (!is_plausible(box, camera_area(blob))) continue;
-    const Label person = order[blob.label - std::size_t{1}];
+    const Label person = order_[blob.label - std::size_t{1}];
+    if (!colors_.knows(person) || !is_plausible(box, camera_area(blob))) continue;
     if (head && person == input.head->person) {
       elsewhere_ = box;
       continue;
     }
     const auto rank = [&](const Blob& one) {
-      return std::pair(input.interest && order[one.label - std::size_t{1}] == *input.interest, one.area_px);
+      return std::pair(input.interest && order_[one.label - std::size_t{1}] == *input.interest, one.area_px);
     };
     if (largest != nullptr && rank(blob) <= rank(*largest)) continue;
     largest = &blob;
     box_ = box;
   }
   if (largest == nullptr) return std::nullopt;
-  return order[largest->label - std::size_t{1}];
+  return order_[largest->label - std::size_t{1}];
 }
 
 std::uint16_t ShirtClassifier::label_of(Label person) const {
-  const auto order = colors_.order();
-  return static_cast<std::uint16_t>(std::ranges::find(order, person) - order.begin() + 1);
+  return static_cast<std::uint16_t>(std::ranges::find(order_, person) - order_.begin() + 1);
 }
 
 // Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
-// far away it is; how large it was where it was followed does.
+// far away it is; how large it was where it was followed does. Beside a passer-by it is followed on; where the head of somebody else is known, that one is
+// named.
 std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, std::optional<Label> by_blob) {
-  if (input.face || input.marker || !followed_person_) return by_blob;
+  const auto teacher = teacher_of(input);
+  if ((teacher && !is_passer_by(*teacher)) || !followed_person_) return by_blob;
   if (!colors_.knows(*followed_person_) || (input.interest && input.interest != followed_person_)) {
     followed_.end();
     return by_blob;
   }
   const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
+  if (input.head && input.head->person != followed_person_) return by_blob;
   if (!place) {
     is_sized_by_place_ = followed_.place() && by_blob == followed_person_;
     return by_blob;
   }
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
   if (!is_plausible(trunk, trunk.area())) return by_blob;
-  learn_at_place(input, trunk);
+  const bool supposed = supposed_ && followed_person_ == person_;
+  if (supposed && overlap(trunk, place_) < kSamePlace) return by_blob;
+  if (!supposed) learn_at_place(input, trunk);
   if (by_blob == followed_person_ && overlap(box_, trunk) >= kSameSize) return by_blob;
   box_ = trunk;
   is_sized_by_place_ = true;
@@ -167,19 +183,26 @@ void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk)
   if (++since_place_learned_ < parameters_.images_between || followed_.contrast() < kMinContrast) return;
   const Box middle{trunk.x + kMargin * trunk.width, trunk.y + kMargin * trunk.height,
                    (1.0 - 2.0 * kMargin) * trunk.width, (1.0 - 2.0 * kMargin) * trunk.height};
-  colors_.add(*followed_person_, region_colors(input.image, middle), {}, light_.of(*followed_person_));
+  colors_.add(*followed_person_, thinned(region_colors(input.image, middle)), {}, light_.of(*followed_person_));
   since_place_learned_ = 0;
   map_is_due_ = true;
 }
 
+// Somebody else, who does not stand where the shirt is followed.
+bool ShirtClassifier::is_passer_by(const Teacher& teacher) const {
+  constexpr double kCovers = 0.5;  // of the place
+  const auto& place = followed_.place();
+  if (!place || teacher.person == followed_person_) return false;
+  return intersection(in_labels(trunk_below(teacher.face)), *place).area() <= kCovers * place->area();
+}
+
 void ShirtClassifier::follow_from(const Teacher& teacher) {
+  if (is_passer_by(teacher)) return;
   followed_.end();
   followed_person_ = teacher.person;
   since_place_learned_ = 0;
   if (!followed_person_ || !colors_.knows(*followed_person_)) return;
-  const Box trunk = trunk_below(teacher.face);
-  followed_.begin(labels_.of(ColorPart::kShirt), label_of(*followed_person_),
-                  {trunk.x / kFactor, trunk.y / kFactor, trunk.width / kFactor, trunk.height / kFactor});
+  followed_.begin(labels_.of(ColorPart::kShirt), label_of(*followed_person_), in_labels(trunk_below(teacher.face)));
 }
 
 std::optional<double> ShirtClassifier::face_px() const {

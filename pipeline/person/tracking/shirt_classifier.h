@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "pipeline/person/classifier.h"
 #include "pipeline/person/colors/blobs.h"
@@ -54,7 +55,7 @@ struct ShirtParameters {
 /// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
 /// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
 /// last face or marker on it is followed at its place too (PartPlace): a blob that is elsewhere, or of another size, is not believed while it is there, and what
-/// it looks like there is learned slowly.
+/// it looks like there is added to its colours now and then, a bounded number of samples at a time.
 ///
 /// Threads: one. Allocates when it is trained.
 class ShirtClassifier final : public Classifier<PersonImage> {
@@ -100,6 +101,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
   std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
+  [[nodiscard]] bool is_passer_by(const Teacher& teacher) const;
   void follow_from(const Teacher& teacher);
   void learn_at_place(const PersonImage& input, const Box& trunk);
   [[nodiscard]] std::uint16_t label_of(Label person) const;
@@ -111,7 +113,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   PersonColors colors_;
   PartLight light_;
   imaging::LabelTable map_;
-  bool map_is_due_ = true;  // something was learned since it was made, or the light has changed
+  std::vector<Label> order_;  // the people by their labels in the map; some may be forgotten since
+  bool map_is_due_ = true;    // something was learned since it was made, or the light has changed
   BlobFinder blobs_;
   PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
   std::optional<Box> last_face_;  // of a recognised person, or where it would be by the marker
