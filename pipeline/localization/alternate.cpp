@@ -258,7 +258,8 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
                              const AlternateOptions& options, WorkBudget& budget) {
   Estimate estimate;
   estimate.solution.X_WC = start;
-  const auto least = static_cast<float>(parameters_.min_match_radius_px);
+  const auto near = static_cast<float>(parameters_.min_match_radius_px);
+  const float least = options.settle ? std::min(near, static_cast<float>(parameters_.settle_radius_px)) : near;
   MatchingRules rules = rules_within(std::max(options.radius_px, least));
   SolverOptions solver;
   solver.paper = parameters_.method == Method::kPaper;
@@ -277,6 +278,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     if (look_now) look(X_WC);
     view_.project(X_WC, camera_);
     if (round == options.rounds_done) metric = motion_metric(X_WC);
+    if (options.settle && rules.radius_px <= near) solver.robust = kFollowedRobust;
     const auto matches = matcher_.match(view_.projected(), perceived, rules);
     gather(matches, perceived);
     Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);

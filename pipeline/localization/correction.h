@@ -68,7 +68,9 @@ struct Correction {
   float rms_px = 0.0F;     ///< of the distances d1 and d2, in pixels of the grey image that was worked on.
   float explained = 0.0F;  ///< share of the expected visible length that was found, 0..1.
   float lead = 0.0F;       ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
-  float evidence = 0.0F;   ///< what the gate judged (gate.h).
+  double cells = 1.0;      ///< Standing::cells.
+  float agreement = 0.0F;  ///< Estimate::agreement_on_map.
+  double cost = 0.0;       ///< Solution::cost.
   float error_log_odds =
       0.0F;  ///< that a searched pose is more than 5 cm or 1.5 degrees off (log_odds_of_error); 0 when tracking.
   float prior_chi2 = 0.0F;

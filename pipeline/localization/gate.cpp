@@ -11,11 +11,38 @@ namespace cgsr::localization {
 namespace {
 
 constexpr double kLeastSigma_m = 1e-4;
-constexpr double kLeastSigma_deg = 1e-3;
+constexpr double kSure_m = 0.005;  // a pose as exact as the map
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+}
+
+// Of the position, in its worst direction.
+double position_sigma_m(const Estimate& estimate) {
+  return std::max(kLeastSigma_m, worst_sigma(covariance_in_map(estimate).topLeftCorner<3, 3>()));
+}
+
+double log_odds(const Estimate& estimate, const Standing& standing, double sigma_m, const GateParameters& parameters) {
+  return parameters.error_log_odds +
+         parameters.error_per_lead * std::min(static_cast<double>(standing.lead), parameters.max_lead) +
+         parameters.error_per_ln_cell * std::log(std::max(1.0, standing.cells)) +
+         parameters.error_per_agreement * static_cast<double>(estimate.agreement_on_map) +
+         parameters.error_per_ln_m * std::log(sigma_m) + parameters.error_per_px * estimate.solution.rms_px +
+         parameters.error_per_ln_match * std::log(std::max(1, estimate.matches)) +
+         parameters.error_per_cost * estimate.solution.cost;
+}
+
+// What would have to be better for a searched pose to be believed.
+Reason missing_in(const Estimate& estimate, const Standing& standing, const GateParameters& parameters) {
+  const double sigma_m = position_sigma_m(estimate);
+  const double most = parameters.max_error_log_odds;
+  if (log_odds(estimate, standing, sigma_m, parameters) <= most) return Reason::kNone;
+  Standing alone = standing;
+  alone.lead = static_cast<float>(parameters.max_lead);
+  if (log_odds(estimate, alone, sigma_m, parameters) <= most) return Reason::kAmbiguous;
+  if (log_odds(estimate, standing, std::min(sigma_m, kSure_m), parameters) <= most) return Reason::kUncertain;
+  return Reason::kUnexplained;
 }
 
 }  // namespace
@@ -41,19 +68,11 @@ float evidence_of(const Estimate& estimate, const Standing& standing, const Gate
   const float lead = std::min({standing.lead, static_cast<float>(parameters.max_lead),
                                agreement - static_cast<float>(parameters.chance_agreement)});
   return agreement + static_cast<float>(parameters.worst_part_weight) * estimate.agreement_in_the_worst + lead -
-         static_cast<float>(parameters.prior_weight) * estimate.prior_chi2 -
-         static_cast<float>(parameters.choice_weight) * static_cast<float>(std::log(std::max(1.0, standing.cells)));
+         static_cast<float>(parameters.prior_weight) * estimate.prior_chi2;
 }
 
 double log_odds_of_error(const Estimate& estimate, const Standing& standing, const GateParameters& parameters) {
-  const geometry::Matrix6d covariance = covariance_in_map(estimate);
-  const double sigma_m = std::max(kLeastSigma_m, worst_sigma(covariance.topLeftCorner<3, 3>()));
-  const double sigma_deg =
-      std::max(kLeastSigma_deg, worst_sigma(covariance.bottomRightCorner<3, 3>()) * 180.0 / std::numbers::pi);
-  const double lead = std::min(static_cast<double>(standing.lead), parameters.max_lead);
-  return parameters.error_log_odds + parameters.error_per_ln_m * std::log(sigma_m) +
-         parameters.error_per_ln_deg * std::log(sigma_deg) + parameters.error_per_px * estimate.solution.rms_px -
-         parameters.error_per_lead * lead;
+  return log_odds(estimate, standing, position_sigma_m(estimate), parameters);
 }
 
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
@@ -68,24 +87,16 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
   if (!standing && estimate.explained < parameters.min_tracking_matched_ratio) return Reason::kUnexplained;
   if (estimate.solution.rms_px > parameters.max_rms_px) return Reason::kResidual;
   if (estimate.prior_chi2 > parameters.max_prior_chi2) return Reason::kFarFromPrior;
-  if (standing && evidence_of(estimate, *standing, decision) < parameters.min_evidence) {
-    const Standing alone{.lead = static_cast<float>(decision.max_lead), .cells = standing->cells};
+  if (!standing) return Reason::kNone;
+  if (standing->narrow && evidence_of(estimate, *standing, decision) < parameters.min_evidence) {
+    const Standing alone{.lead = static_cast<float>(decision.max_lead)};
     return evidence_of(estimate, alone, decision) < parameters.min_evidence ? Reason::kUnexplained : Reason::kAmbiguous;
   }
-  if (!standing) return Reason::kNone;
-  double max_sigma_m = parameters.max_sigma_m;
-  if (!standing->narrow) {
-    // A wrong map has a pose that fits a few of its edges, and leaves open what they do: the less speaks for a searched pose, the surer it must be.
-    const double more = static_cast<double>(evidence_of(estimate, *standing, decision)) - parameters.min_evidence;
-    max_sigma_m *=
-        std::min(decision.max_sigma_ratio, decision.min_sigma_ratio + decision.sigma_ratio_per_evidence * more);
-  }
   const double max_sigma_rad = parameters.max_sigma_deg * std::numbers::pi / 180.0;
-  if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= max_sigma_m) ||
+  if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= parameters.max_sigma_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= max_sigma_rad))
     return Reason::kUncertain;
-  if (!standing->narrow && !(log_odds_of_error(estimate, *standing, decision) <= decision.max_error_log_odds))
-    return Reason::kUncertain;
+  if (!standing->narrow) return missing_in(estimate, *standing, decision);
   return Reason::kNone;
 }
 

@@ -26,12 +26,13 @@ struct Standing {
 /// Whether two poses are one answer: which of them is taken would be no great error.
 bool same_answer(const geometry::Pose& a, const geometry::Pose& b, const GateParameters& parameters);
 
-/// What speaks for an estimate that a search found: how well image and map agree there, how far ahead of the next best pose it is, less how
-/// far it is from the prior and how many poses there were to choose from: among many one fits by accident.
+/// What speaks for one of the few poses that a narrow prior holds: how well image and map agree there, how far ahead of the next best pose it is,
+/// less how far it is from the prior.
 float evidence_of(const Estimate& estimate, const Standing& standing, const GateParameters& parameters);
 
-/// The log-odds that a pose that a search found is more than 5 cm or 1.5 degrees off: from its stated standard deviations, the residual of its
-/// matches and its lead. Ours: a logistic regression over the poses of generated homes (README.md has the counts).
+/// The log-odds that a pose that a search found is more than 5 cm or 1.5 degrees off: from how well image and map agree there, its lead, how
+/// many poses there were to choose from, what its matches leave open, how many they are and how well they and the prior fit.
+/// Ours: a logistic regression over what searches found in generated homes and shipped worlds, with right and wrong maps (README.md has the counts).
 double log_odds_of_error(const Estimate& estimate, const Standing& standing, const GateParameters& parameters);
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.

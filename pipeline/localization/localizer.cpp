@@ -133,7 +133,9 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.prior_chi2 = estimate.prior_chi2;
   answer.lead = standing ? standing->lead : 1.0F;
   answer.rms_px = static_cast<float>(estimate.solution.rms_px);
-  answer.evidence = standing ? evidence_of(estimate, *standing, parameters.decision) : estimate.explained;
+  answer.cells = standing ? standing->cells : 1.0;
+  answer.agreement = estimate.agreement_on_map;
+  answer.cost = estimate.solution.cost;
   if (standing) answer.error_log_odds = static_cast<float>(log_odds_of_error(estimate, *standing, parameters.decision));
   if (parameters.gate) {
     answer.reason = gate(estimate, standing, with_map_error(covariance, parameters), parameters);
@@ -208,7 +210,7 @@ Correction Localizer::State::go_on(const Belief& belief, WorkBudget& budget) {
     return answer;
   }
   if (search.go_on(belief, perception.edges(), budget))
-    judge(settled(search.best(), belief), Standing{.lead = search.lead(), .cells = search.cells()}, answer);
+    judge(search.best(), Standing{.lead = search.lead(), .cells = search.cells()}, answer);
   answer.starts = search.starts();
   return answer;
 }

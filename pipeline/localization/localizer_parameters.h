@@ -39,16 +39,15 @@ struct GateParameters {
   double chance_agreement = 0.2;
   double worst_part_weight = 0.5;
   double prior_weight = 0.02;
-  double choice_weight = 0.08;
-  double min_sigma_ratio = 0.3;
-  double sigma_ratio_per_evidence = 2.5;
-  double max_sigma_ratio = 1.2;
-  double error_log_odds = 1.55;
-  double error_per_ln_m = 1.2;
-  double error_per_ln_deg = 0.97;
-  double error_per_px = 4.3;
-  double error_per_lead = 8.65;
-  double max_error_log_odds = -2.0;
+  double error_log_odds = 8.0;
+  double error_per_lead = -8.9;
+  double error_per_ln_cell = 0.24;
+  double error_per_agreement = -5.2;
+  double error_per_ln_m = 1.15;
+  double error_per_px = 6.8;
+  double error_per_ln_match = -2.15;
+  double error_per_cost = 0.127;
+  double max_error_log_odds = -2.75;
   double same_m = 0.05;
   double same_deg = 1.5;
   int min_expected = 3;
@@ -64,14 +63,6 @@ struct GateParameters {
                  "The weight of the agreement in the worst parts of the image.");
     visit.number("prior_weight", self.prior_weight, {0.0, 1.0}, "",
                  "The evidence that each unit of squared Mahalanobis distance to the prior costs.");
-    visit.number("choice_weight", self.choice_weight, {0.0, 1.0}, "",
-                 "The evidence that the choice costs, per natural logarithm of the number of distinct poses in the "
-                 "prior: the best of many agrees by chance.");
-    visit.number("min_sigma_ratio", self.min_sigma_ratio, {0.0, 10.0}, "",
-                 "The share of max_sigma_m that is accepted after a search with just enough evidence.");
-    visit.number("sigma_ratio_per_evidence", self.sigma_ratio_per_evidence, {0.0, 100.0}, "",
-                 "The growth of that share per unit of evidence above min_evidence.");
-    visit.number("max_sigma_ratio", self.max_sigma_ratio, {0.0, 10.0}, "", "That share does not grow beyond this.");
     describe_error(self, visit);
     visit.number("same_m", self.same_m, {0.0, 1.0}, "m",
                  "Two poses are the same answer when they are at most this far apart and turned by at most same_deg.");
@@ -87,17 +78,26 @@ struct GateParameters {
  private:
   template <class Self, class Visitor>
   static void describe_error(Self& self, Visitor& visit) {
-    visit.number("error_log_odds", self.error_log_odds, {-100.0, 100.0}, "",
-                 "The natural log-odds that a searched pose is more than 5 cm or 1.5 degrees off, where its standard "
-                 "deviations are 1 m and 1 degree, and its residual and lead are 0.");
-    visit.number("error_per_ln_m", self.error_per_ln_m, {0.0, 100.0}, "",
-                 "The growth of these log-odds per natural logarithm of the standard deviation of the position.");
-    visit.number("error_per_ln_deg", self.error_per_ln_deg, {0.0, 100.0}, "",
-                 "The growth of these log-odds per natural logarithm of the standard deviation of the rotation.");
-    visit.number("error_per_px", self.error_per_px, {0.0, 100.0}, "1/px",
+    visit.number(
+        "error_log_odds", self.error_log_odds, {-1000.0, 1000.0}, "",
+        "The natural log-odds that a searched pose is more than 5 cm or 1.5 degrees off, where all that follows "
+        "is 0 or, of a logarithm, 1.");
+    visit.number("error_per_lead", self.error_per_lead, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per unit of lead over the next hypothesis, up to max_lead.");
+    visit.number("error_per_ln_cell", self.error_per_ln_cell, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per natural logarithm of the number of distinct poses in the prior.");
+    visit.number("error_per_agreement", self.error_per_agreement, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per unit of agreement.");
+    visit.number("error_per_ln_m", self.error_per_ln_m, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per natural logarithm of the standard deviation of the position in "
+                 "metres.");
+    visit.number("error_per_px", self.error_per_px, {-1000.0, 1000.0}, "1/px",
                  "The growth of these log-odds per pixel of the matches' root mean square.");
-    visit.number("error_per_lead", self.error_per_lead, {0.0, 100.0}, "",
-                 "The decrease of these log-odds per unit of lead over the next hypothesis.");
+    visit.number("error_per_ln_match", self.error_per_ln_match, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per natural logarithm of the number of matches.");
+    visit.number("error_per_cost", self.error_per_cost, {-1000.0, 1000.0}, "",
+                 "The growth of these log-odds per unit of the solver's cost: the robust sum of the squared distances "
+                 "in standard deviations and of the prior's.");
     visit.number("max_error_log_odds", self.max_error_log_odds, {-100.0, 100.0}, "",
                  "The gate accepts at most these log-odds of an error after a search.");
   }
@@ -163,6 +163,7 @@ struct LocalizerParameters {
   double max_match_angle_deg = 12.0;
   double max_match_radius_px = 24.0;
   double min_match_radius_px = 4.0;
+  double settle_radius_px = 2.5;
   double max_tracking_sigma_px = 7.0;
   double hypothesis_spacing_px = 12.0;
   double hypotheses_per_cell = 32.0;
@@ -229,6 +230,9 @@ struct LocalizerParameters {
                  "The largest effective distance between an expected and a perceived edge that match.");
     visit.number("min_match_radius_px", self.min_match_radius_px, {1.0, 50.0}, "px",
                  "The distance to which that radius shrinks while the pose converges.");
+    visit.number("settle_radius_px", self.settle_radius_px, {0.5, 50.0}, "px",
+                 "The distance to which it shrinks further in a search, where two parallel lines may lie closer than "
+                 "min_match_radius_px.");
   }
 
   template <class Self, class Visitor>
@@ -260,13 +264,13 @@ struct LocalizerParameters {
                  "hidden map moves no pose.");
     visit.number(
         "min_evidence", self.min_evidence, {-10.0, 2.0}, "",
-        "The gate requires at least this evidence after a search: the agreement of image and map, also in the worst "
-        "parts of the image, and the lead over the next hypothesis, less the distance to the prior and its width.");
+        "The gate requires at least this evidence for one of the few poses that a narrow prior holds: the agreement of "
+        "image and map, also in the worst parts of the image, and the lead over the next hypothesis, less the distance "
+        "to the prior.");
     visit.number("max_prior_chi2", self.max_prior_chi2, {1.0, 1000.0}, "",
                  "The gate accepts at most this squared Mahalanobis distance to the prior.");
     visit.number("max_sigma_m", self.max_sigma_m, {0.001, 10.0}, "m",
-                 "The gate accepts at most this standard deviation in the position's worst direction after a search, "
-                 "scaled by decision.min_sigma_ratio to decision.max_sigma_ratio depending on the evidence.");
+                 "The gate accepts at most this standard deviation in the position's worst direction after a search.");
     visit.number("max_sigma_deg", self.max_sigma_deg, {0.01, 90.0}, "deg",
                  "The gate accepts at most this standard deviation about the worst axis of rotation after a search.");
     visit.number("max_rms_px", self.max_rms_px, {0.1, 50.0}, "px",

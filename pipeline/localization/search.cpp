@@ -175,7 +175,8 @@ void Search::keep(const Estimate& estimate) {
 
 bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   const AlternateOptions options{.rounds = parameters_.max_iterations,
-                                 .radius_px = static_cast<float>(parameters_.max_match_radius_px)};
+                                 .radius_px = static_cast<float>(parameters_.max_match_radius_px),
+                                 .settle = true};
   while (next_finalist_ < finalists_.size()) {
     if (units <= 0) return false;
     units -= kFinalistUnits;
@@ -201,7 +202,8 @@ Pose Search::neighbour() const {
 bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units) {
   if (estimates_.empty()) return true;
   const AlternateOptions options{.rounds = kNeighbourRounds,
-                                 .radius_px = 0.5F * static_cast<float>(parameters_.max_match_radius_px)};
+                                 .radius_px = 0.5F * static_cast<float>(parameters_.max_match_radius_px),
+                                 .settle = true};
   while (walk_ < parameters_.walks) {
     if (next_neighbour_ == 0) {
       X_WC_walk_ = estimates_.front().solution.X_WC;
@@ -226,18 +228,20 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
   return true;
 }
 
-// The best and those that come next, refined with the gate's figures: the last word is between them.
+// The best and those that come next, with the gate's figures and the noise that their matches show (a wide prior must not pull a pose off
+// what is seen well): the last word is between them.
 bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
   const AlternateOptions options{.rounds = parameters_.max_iterations,
-                                 .radius_px = static_cast<float>(2.0 * parameters_.min_match_radius_px),
-                                 .by_part = true};
+                                 .radius_px = static_cast<float>(parameters_.min_match_radius_px),
+                                 .settle = true,
+                                 .measured_noise = true};
   while (next_judged_ < std::min(kJudged, estimates_.size())) {
     const auto estimate =
         refinement_.refine(estimates_[next_judged_].solution.X_WC, belief, perceived, options, budget);
     if (!estimate) return false;
     judged_[next_judged_++] = *estimate;
   }
-  return granted(budget, kLookUnits + kRoundUnits);  // for who settles the best one
+  return true;
 }
 
 void Search::verdict() {

@@ -40,7 +40,7 @@ class Search {
   [[nodiscard]] bool running() const { return stage_ != Stage::kIdle; }
 
   /// Works on one image as far as the budget goes; what it cuts off goes on in the next image. \return whether the search came to its end: best()
-  /// and lead() hold, and the look and the round that settle the best pose are granted.
+  /// and lead() hold.
   bool go_on(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget);
 
   void carried(const geometry::Pose& X_C0C1);

@@ -22,71 +22,62 @@ Estimate good() {
   return estimate;
 }
 
-Reason judged(const Estimate& estimate, const std::optional<Standing>& standing = Standing{0.2F, 2.0}) {
+Reason judged(const Estimate& estimate, const std::optional<Standing>& standing = Standing{0.2F}) {
   const LocalizerParameters parameters;
   return gate(estimate, standing, with_map_error(covariance_in_map(estimate), parameters), parameters);
 }
 
+constexpr Standing kOfFew{.lead = 0.2F, .narrow = true};
+
 TEST(Gate, LetsThroughWhatIsSure) {
   EXPECT_EQ(judged(good()), Reason::kNone);
+  EXPECT_EQ(judged(good(), kOfFew), Reason::kNone);
 }
 
 TEST(Gate, DecidesByItsParameters) {
   const Estimate estimate = good();
   const geometry::Matrix6d covariance = covariance_in_map(estimate);
-  const auto judged_by = [&](auto change) {
+  const auto judged_by = [&](auto change, const Standing& standing = Standing{0.2F}) {
     LocalizerParameters parameters;
     change(parameters.decision);
-    return gate(estimate, Standing{0.2F, 2.0}, covariance, parameters);
+    return gate(estimate, standing, covariance, parameters);
   };
   EXPECT_EQ(judged_by([](GateParameters&) {}), Reason::kNone);
   EXPECT_EQ(judged_by([](GateParameters& p) { p.min_expected = 21; }), Reason::kNothingExpected);
-  EXPECT_EQ(judged_by([](GateParameters& p) { p.prior_weight = 0.5; }), Reason::kUnexplained);
-  EXPECT_EQ(judged_by([](GateParameters& p) { p.max_sigma_ratio = 0.0; }), Reason::kUncertain);
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.prior_weight = 0.5; }, kOfFew), Reason::kUnexplained);
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.prior_weight = 0.5; }), Reason::kNone) << "that of a narrow prior";
+  EXPECT_EQ(judged_by([](GateParameters& p) { p.max_error_log_odds = -100.0; }), Reason::kUnexplained);
 }
 
-TEST(Gate, AsksForMoreEvidenceTheWiderASearchedPoseIs) {
-  const auto known_to = [](double sigma_m, float agreement) {
-    Estimate estimate = good();
-    estimate.agreement_on_map = agreement;
-    estimate.solution.information(0, 0) = 1.0 / (sigma_m * sigma_m);
-    return estimate;
-  };
-  const Standing just_ahead{0.06F, 2.0};
-  EXPECT_EQ(judged(known_to(0.02, 0.45F), just_ahead), Reason::kNone);
-  EXPECT_EQ(judged(known_to(0.06, 0.45F), just_ahead), Reason::kUncertain);
-  EXPECT_EQ(judged(known_to(0.06, 0.8F), just_ahead), Reason::kNone);
-  EXPECT_EQ(judged(known_to(0.15, 0.8F), just_ahead), Reason::kUncertain) << "whatever speaks for it";
-  Standing few_starts = just_ahead;
-  few_starts.narrow = true;
-  EXPECT_EQ(judged(known_to(0.06, 0.45F), few_starts), Reason::kNone) << "the prior was right before";
-}
-
-// Nothing but the evidence says that it is the right one of several; how exact it is, its sigmas, its residual and its lead say.
-TEST(Gate, RefusesASearchedPoseThatIsLikelyToBeOff) {
-  Estimate estimate = good();
-  estimate.agreement_on_map = 0.9F;
-  estimate.solution.information = geometry::Matrix6d::Identity();
-  estimate.solution.information.topLeftCorner<3, 3>() *= 1.0 / (0.04 * 0.04);
-  estimate.solution.information.bottomRightCorner<3, 3>() *= 1.0 / (0.02 * 0.02);
-  Standing standing{0.05F, 2.0};
-  EXPECT_EQ(judged(estimate, standing), Reason::kUncertain);
-  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kNone) << "how uncertain a followed one may be is the tracker's";
-  standing.narrow = true;
-  EXPECT_EQ(judged(estimate, standing), Reason::kNone);
+// Nothing but log-odds decides on a searched pose. Whatever makes it better makes them fewer.
+TEST(Gate, ASearchedPoseIsBelievedByTheLogOddsOfItsError) {
   const GateParameters parameters;
-  const Standing wide{0.05F, 2.0};
-  const double odds = log_odds_of_error(estimate, wide, parameters);
-  EXPECT_GT(odds, parameters.max_error_log_odds);
-  EXPECT_LT(log_odds_of_error(estimate, {0.25F, 2.0}, parameters), odds) << "ahead of all others";
-  EXPECT_EQ(log_odds_of_error(estimate, {1.0F, 2.0}, parameters), log_odds_of_error(estimate, {0.3F, 2.0}, parameters))
+  Estimate estimate = good();
+  estimate.agreement_on_map = 0.5F;
+  estimate.solution.information = geometry::Matrix6d::Identity() / (0.03 * 0.03);
+  estimate.solution.rms_px = 0.6;
+  estimate.matches = 10;
+  estimate.solution.cost = 10.0;
+  const Standing standing{0.05F};
+  const double odds = log_odds_of_error(estimate, standing, parameters);
+  ASSERT_GT(odds, parameters.max_error_log_odds);
+  EXPECT_NE(judged(estimate, standing), Reason::kNone);
+  EXPECT_EQ(judged(estimate, std::nullopt), Reason::kNone) << "how uncertain a followed one may be is the tracker's";
+  EXPECT_LT(log_odds_of_error(estimate, {0.25F}, parameters), odds) << "ahead of all others";
+  EXPECT_EQ(log_odds_of_error(estimate, {1.0F}, parameters), log_odds_of_error(estimate, {0.3F}, parameters))
       << "no lead counts for more than max_lead";
-  Estimate closer = estimate;
-  closer.solution.rms_px = 0.2;
-  EXPECT_LT(log_odds_of_error(closer, wide, parameters), odds);
-  Estimate surer = estimate;
-  surer.solution.information *= 16.0;
-  EXPECT_LT(log_odds_of_error(surer, wide, parameters), odds);
+  const auto better = [&](auto change) {
+    Estimate changed = estimate;
+    change(changed);
+    return log_odds_of_error(changed, standing, parameters);
+  };
+  EXPECT_LT(better([](Estimate& e) { e.agreement_on_map = 0.8F; }), odds);
+  EXPECT_LT(better([](Estimate& e) { e.solution.information *= 16.0; }), odds);
+  EXPECT_LT(better([](Estimate& e) { e.solution.rms_px = 0.2; }), odds);
+  EXPECT_LT(better([](Estimate& e) { e.matches = 40; }), odds);
+  EXPECT_LT(better([](Estimate& e) { e.solution.cost = 2.0; }), odds);
+  EXPECT_LT(better([](Estimate&) {}), log_odds_of_error(estimate, {.lead = 0.05F, .cells = 50.0}, parameters))
+      << "one of more poses";
 }
 
 TEST(Gate, NamesWhatIsMissing) {
@@ -101,7 +92,7 @@ TEST(Gate, NamesWhatIsMissing) {
   EXPECT_EQ(judged(estimate), Reason::kTooFewMatches);
   estimate = good();
   estimate.agreement_on_map = 0.1F;
-  EXPECT_EQ(judged(estimate), Reason::kUnexplained) << "no lead makes that enough";
+  EXPECT_EQ(judged(estimate, kOfFew), Reason::kUnexplained) << "no lead makes that enough";
   estimate = good();
   estimate.explained = 0.2F;
   EXPECT_EQ(judged(estimate, std::nullopt), Reason::kUnexplained) << "the followed pose";
@@ -112,8 +103,11 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate.prior_chi2 = 30.0F;
   EXPECT_EQ(judged(estimate), Reason::kFarFromPrior);
   estimate = good();
-  estimate.agreement_on_map = 0.45F;
-  EXPECT_EQ(judged(estimate, Standing{0.001F, 2.0}), Reason::kAmbiguous);
+  estimate.agreement_on_map = 0.4F;
+  EXPECT_EQ(judged(estimate, Standing{.lead = 0.001F, .narrow = true}), Reason::kAmbiguous);
+  estimate.solution.information = geometry::Matrix6d::Identity() / (0.03 * 0.03);
+  EXPECT_EQ(judged(estimate, Standing{0.0F}), Reason::kAmbiguous);
+  EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kNone);
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
@@ -122,20 +116,11 @@ TEST(Gate, NamesWhatIsMissing) {
 // A floor's tape that fits, and all that stands on it does not.
 TEST(Gate, AsksWhetherImageAndMapAgreeEverywhere) {
   Estimate estimate = good();
-  estimate.agreement_on_map = 0.45F;
-  EXPECT_EQ(judged(estimate, Standing{0.1F, 2.0}), Reason::kNone);
+  estimate.agreement_on_map = 0.4F;
+  const Standing standing{.lead = 0.1F, .narrow = true};
+  EXPECT_EQ(judged(estimate, standing), Reason::kNone);
   estimate.agreement_in_the_worst = 0.0F;
-  EXPECT_NE(judged(estimate, Standing{0.1F, 2.0}), Reason::kNone);
-}
-
-// What is enough near a narrow prior is not enough far away in a wide one, where something always fits.
-TEST(Gate, AsksForMoreWhereThereIsMoreToChooseFrom) {
-  Estimate estimate = good();
-  estimate.agreement_on_map = 0.5F;
-  EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kNone);
-  EXPECT_EQ(judged(estimate, Standing{0.1F, 20.0}), Reason::kAmbiguous);
-  estimate.prior_chi2 = 16.0F;
-  EXPECT_EQ(judged(estimate, Standing{0.1F, 1.0}), Reason::kAmbiguous);
+  EXPECT_NE(judged(estimate, standing), Reason::kNone);
 }
 
 // Who drives along a bare wall sees its skirting and no more: its distance is better than nothing, and the prior holds the rest.

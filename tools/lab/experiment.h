@@ -66,6 +66,7 @@ Result<Report> search_cost(const Setting& setting);
 Result<Report> figure_3_3(const Setting& setting);
 Result<Report> table_4_1(const Setting& setting);
 Result<Report> homes_4_1(const Setting& setting);
+Result<Report> gate_reliability(const Setting& setting);
 Result<Report> start_anywhere(const Setting& setting);
 Result<Report> table_4_2(const Setting& setting);
 Result<Report> real_localization(const Setting& setting);
