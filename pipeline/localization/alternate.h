@@ -59,8 +59,7 @@ struct AlternateOptions {
   double robust = SolverOptions{}.robust;  ///< likewise there.
   bool look_first = true;                  ///< false: the pieces of the last look are good enough.
   bool look_again = true;                  ///< when the pose moved far.
-  /// A search's: once the radius has shrunk to min_match_radius_px it shrinks on to settle_radius_px, and distances count as those of a followed
-  /// pose do (kFollowedRobust).
+  /// Of a search: after the radius has reached min_match_radius_px it shrinks on to settle_radius_px, with the robust constant kFollowedRobust.
   bool settle = false;
   bool by_part = false;  ///< for the gate: where in the image they agree.
   bool measured_noise =

@@ -68,9 +68,11 @@ struct Correction {
   float rms_px = 0.0F;     ///< of the distances d1 and d2, in pixels of the grey image that was worked on.
   float explained = 0.0F;  ///< share of the expected visible length that was found, 0..1.
   float lead = 0.0F;       ///< ahead of the second-best pose that differs, in agreement; 1 when no other was looked at.
-  double cells = 1.0;      ///< Standing::cells.
-  float agreement = 0.0F;  ///< Estimate::agreement_on_map.
-  double cost = 0.0;       ///< Solution::cost.
+  double cells = 1.0;      ///< how many poses that differ the prior holds; 1 when tracking.
+  float agreement =
+      0.0F;  ///< of image and map, 0..1: the length of edges that both hold over the length that either has.
+  double cost =
+      0.0;  ///< the solver's: robust squared distances in standard deviations and the prior's, summed, before the noise was measured.
   float error_log_odds =
       0.0F;  ///< that a searched pose is more than 5 cm or 1.5 degrees off (log_odds_of_error); 0 when tracking.
   float prior_chi2 = 0.0F;

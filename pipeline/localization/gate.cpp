@@ -11,7 +11,7 @@ namespace cgsr::localization {
 namespace {
 
 constexpr double kLeastSigma_m = 1e-4;
-constexpr double kSure_m = 0.005;  // a pose as exact as the map
+constexpr double kAsTheMap_m = 0.005;  // a pose as exact as a room's map
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -33,15 +33,15 @@ double log_odds(const Estimate& estimate, const Standing& standing, double sigma
          parameters.error_per_cost * estimate.solution.cost;
 }
 
-// What would have to be better for a searched pose to be believed.
-Reason missing_in(const Estimate& estimate, const Standing& standing, const GateParameters& parameters) {
+// What would have to be better for a searched pose to be accepted.
+Reason reason_of_refusal(const Estimate& estimate, const Standing& standing, const GateParameters& parameters) {
   const double sigma_m = position_sigma_m(estimate);
   const double most = parameters.max_error_log_odds;
   if (log_odds(estimate, standing, sigma_m, parameters) <= most) return Reason::kNone;
   Standing alone = standing;
   alone.lead = static_cast<float>(parameters.max_lead);
   if (log_odds(estimate, alone, sigma_m, parameters) <= most) return Reason::kAmbiguous;
-  if (log_odds(estimate, standing, std::min(sigma_m, kSure_m), parameters) <= most) return Reason::kUncertain;
+  if (log_odds(estimate, standing, std::min(sigma_m, kAsTheMap_m), parameters) <= most) return Reason::kUncertain;
   return Reason::kUnexplained;
 }
 
@@ -96,7 +96,7 @@ Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, c
   if (!(worst_sigma(covariance.topLeftCorner<3, 3>()) <= parameters.max_sigma_m) ||
       !(worst_sigma(covariance.bottomRightCorner<3, 3>()) <= max_sigma_rad))
     return Reason::kUncertain;
-  if (!standing->narrow) return missing_in(estimate, *standing, decision);
+  if (!standing->narrow) return reason_of_refusal(estimate, *standing, decision);
   return Reason::kNone;
 }
 

@@ -37,6 +37,8 @@ double log_odds_of_error(const Estimate& estimate, const Standing& standing, con
 
 /// The first test that an estimate does not pass, or kNone. A wrong correction is worse than none.
 /// Ours: Alg. 4.1 has no gate.
+/// After the limits on expected edges, matches, residual and distance to the prior: a searched pose is accepted by its standard deviations and the
+/// log-odds of its error, one of the few poses of a narrow prior by its evidence and standard deviations.
 /// \param standing  none: the pose was followed from a narrow prior. How uncertain it may be then is the tracker's to say.
 Reason gate(const Estimate& estimate, const std::optional<Standing>& standing, const geometry::Matrix6d& covariance,
             const LocalizerParameters& parameters);

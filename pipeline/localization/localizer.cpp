@@ -136,7 +136,8 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.cells = standing ? standing->cells : 1.0;
   answer.agreement = estimate.agreement_on_map;
   answer.cost = estimate.solution.cost;
-  if (standing) answer.error_log_odds = static_cast<float>(log_odds_of_error(estimate, *standing, parameters.decision));
+  if (standing && !standing->narrow && estimate.solved)
+    answer.error_log_odds = static_cast<float>(log_odds_of_error(estimate, *standing, parameters.decision));
   if (parameters.gate) {
     answer.reason = gate(estimate, standing, with_map_error(covariance, parameters), parameters);
   } else if (estimate.solved) {

@@ -32,8 +32,8 @@ constexpr std::string_view to_string(ExpectationKind kind) {
   return word_in(kExpectationKindNames, kind);
 }
 
-/// What counts as evidence for a pose, and how much of it the gate requires. Evidence is in units of agreement: 1 where all of the map that
-/// should be visible is in the image.
+/// What the gate decides by: for a searched pose the log-odds of its error, for one of the few poses that a narrow prior holds evidence, in units
+/// of agreement: 1 where all of the map that should be visible is in the image.
 struct GateParameters {
   double max_lead = 0.3;
   double chance_agreement = 0.2;
@@ -56,7 +56,7 @@ struct GateParameters {
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     visit.number("max_lead", self.max_lead, {0.0, 2.0}, "",
-                 "The lead over the next hypothesis counts as evidence up to this.");
+                 "The lead over the next hypothesis counts up to this, as evidence and in the log-odds of an error.");
     visit.number("chance_agreement", self.chance_agreement, {0.0, 1.0}, "",
                  "The agreement of the next hypothesis where the search found none: some pose always has as much.");
     visit.number("worst_part_weight", self.worst_part_weight, {0.0, 5.0}, "",
@@ -82,20 +82,20 @@ struct GateParameters {
         "error_log_odds", self.error_log_odds, {-1000.0, 1000.0}, "",
         "The natural log-odds that a searched pose is more than 5 cm or 1.5 degrees off, where all that follows "
         "is 0 or, of a logarithm, 1.");
-    visit.number("error_per_lead", self.error_per_lead, {-1000.0, 1000.0}, "",
+    visit.number("error_per_lead", self.error_per_lead, {-1000.0, 0.0}, "",
                  "The growth of these log-odds per unit of lead over the next hypothesis, up to max_lead.");
-    visit.number("error_per_ln_cell", self.error_per_ln_cell, {-1000.0, 1000.0}, "",
+    visit.number("error_per_ln_cell", self.error_per_ln_cell, {0.0, 1000.0}, "",
                  "The growth of these log-odds per natural logarithm of the number of distinct poses in the prior.");
-    visit.number("error_per_agreement", self.error_per_agreement, {-1000.0, 1000.0}, "",
+    visit.number("error_per_agreement", self.error_per_agreement, {-1000.0, 0.0}, "",
                  "The growth of these log-odds per unit of agreement.");
-    visit.number("error_per_ln_m", self.error_per_ln_m, {-1000.0, 1000.0}, "",
+    visit.number("error_per_ln_m", self.error_per_ln_m, {0.0, 1000.0}, "",
                  "The growth of these log-odds per natural logarithm of the standard deviation of the position in "
                  "metres.");
-    visit.number("error_per_px", self.error_per_px, {-1000.0, 1000.0}, "1/px",
+    visit.number("error_per_px", self.error_per_px, {0.0, 1000.0}, "1/px",
                  "The growth of these log-odds per pixel of the matches' root mean square.");
-    visit.number("error_per_ln_match", self.error_per_ln_match, {-1000.0, 1000.0}, "",
+    visit.number("error_per_ln_match", self.error_per_ln_match, {-1000.0, 0.0}, "",
                  "The growth of these log-odds per natural logarithm of the number of matches.");
-    visit.number("error_per_cost", self.error_per_cost, {-1000.0, 1000.0}, "",
+    visit.number("error_per_cost", self.error_per_cost, {0.0, 1000.0}, "",
                  "The growth of these log-odds per unit of the solver's cost: the robust sum of the squared distances "
                  "in standard deviations and of the prior's.");
     visit.number("max_error_log_odds", self.max_error_log_odds, {-100.0, 100.0}, "",
@@ -192,7 +192,7 @@ struct LocalizerParameters {
     describe_gate(self, visit);
     visit.number("max_pieces", self.max_pieces, {16, 20000}, "",
                  "The largest number of visible edge pieces; the nearest and longest ones are kept.");
-    visit.section("decision", self.decision, "The evidence for a pose and the gate's decision on it");
+    visit.section("decision", self.decision, "The gate's decision on a pose: evidence and the log-odds of an error");
     visit.section("alternative", self.alternative, "Another pose beside a tracked one");
   }
 
@@ -205,7 +205,7 @@ struct LocalizerParameters {
                  "OpenGL and costs ten times as much.");
     visit.flag("search", self.search,
                "Several hypotheses are examined where the prior is wide; otherwise only the prior's mean is.");
-    visit.flag("gate", self.gate, "A correction is accepted only when the evidence for it is sufficient.");
+    visit.flag("gate", self.gate, "A correction is accepted only when it passes the gate.");
     visit.number("max_iterations", self.max_iterations, {1, 50}, "",
                  "The largest number of iterations of expectation and maximisation.");
     visit.number("min_step_px", self.min_step_px, {0.001, 10.0}, "px",
@@ -232,7 +232,7 @@ struct LocalizerParameters {
                  "The distance to which that radius shrinks while the pose converges.");
     visit.number("settle_radius_px", self.settle_radius_px, {0.5, 50.0}, "px",
                  "The distance to which it shrinks further in a search, where two parallel lines may lie closer than "
-                 "min_match_radius_px.");
+                 "min_match_radius_px; a larger value counts as that.");
   }
 
   template <class Self, class Visitor>

@@ -56,8 +56,10 @@ TEST(OddsFit, StatesWhatTheGateStates) {
   estimate.matches = 17;
   estimate.solution.rms_px = 0.5;
   estimate.solution.cost = 9.0;
-  estimate.solution.information = geometry::Matrix6d::Identity() / (0.02 * 0.02);
-  const localization::Standing standing{.lead = 0.12F, .cells = 6.0};
+  geometry::Vector6d sigma;
+  sigma << 0.02, 0.05, 0.01, 0.3, 0.4, 0.2;
+  estimate.solution.information = sigma.cwiseAbs2().cwiseInverse().asDiagonal();
+  const localization::Standing standing{.lead = 0.6F, .cells = 6.0};
   localization::Correction answer;
   answer.covariance = localization::covariance_in_map(estimate);
   answer.lead = standing.lead;

@@ -2,6 +2,7 @@
 // when its table is measured again. Seeds below 1000 are for tests and for tuning.
 
 #include <cstdlib>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -81,6 +82,31 @@ TEST(DrawnHomes, AreMeasuredByHome) {
     EXPECT_GT(row.ours.value_or(0.0), 0.0) << row.row;
   }
   EXPECT_EQ(rows, 4);
+}
+
+// The reliability of the gate likewise: one home, whose poses are all accounted for.
+TEST(GateReliability, IsMeasuredByHome) {
+  const test::ScratchCache cache;
+  Setting setting;
+  setting.seed = 7;
+  setting.trials = 1;
+  setting.count = false;
+  const auto report = measure(*experiment_of("gate-reliability"), setting);
+  ASSERT_TRUE(report) << report.error().message;
+  int searched = 0;
+  bool claimed = false;
+  for (const Row& row : report->rows) {
+    if (row.quantity == "wrong" && row.row.starts_with("as configured") && row.row.find("at most") == std::string::npos)
+      searched += row.trials;
+    if (row.quantity != "claimed" || row.row != "as configured") continue;
+    claimed = true;
+    EXPECT_EQ(row.trials, 1) << "a home";
+    EXPECT_GT(row.ours.value_or(0.0), 0.0);
+  }
+  EXPECT_TRUE(claimed);
+  EXPECT_GT(searched, 5) << to_text(*report);
+  EXPECT_LE(searched, 20);
+  EXPECT_FALSE(report->plots.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Small, Requirements,

@@ -49,8 +49,8 @@ TEST(Gate, DecidesByItsParameters) {
   EXPECT_EQ(judged_by([](GateParameters& p) { p.max_error_log_odds = -100.0; }), Reason::kUnexplained);
 }
 
-// Nothing but log-odds decides on a searched pose. Whatever makes it better makes them fewer.
-TEST(Gate, ASearchedPoseIsBelievedByTheLogOddsOfItsError) {
+// Whatever makes a searched pose better makes an error less likely.
+TEST(Gate, ASearchedPoseIsAcceptedByTheLogOddsOfItsError) {
   const GateParameters parameters;
   Estimate estimate = good();
   estimate.agreement_on_map = 0.5F;
@@ -111,6 +111,12 @@ TEST(Gate, NamesWhatIsMissing) {
   estimate = good();
   estimate.solution.information(0, 0) = 1.0;  // 1 m along x
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
+  estimate = good();
+  estimate.matches = 8;
+  estimate.solution.information = geometry::Matrix6d::Identity() / (0.06 * 0.06);
+  EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kUncertain) << "exact to 6 cm";
+  estimate.solution.information = geometry::Matrix6d::Identity() / (0.005 * 0.005);
+  EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kNone);
 }
 
 // A floor's tape that fits, and all that stands on it does not.

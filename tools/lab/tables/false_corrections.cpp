@@ -1,11 +1,12 @@
 // How often a correction is claimed that makes the pose worse: with the right map, a wrong one, nothing to see, and what no map holds in
 // front.
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
-#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
