@@ -147,6 +147,7 @@ double probability(double log_odds) {
 /// What was stated of samples, one figure each.
 std::vector<double> stated(const std::vector<OddsSample>& samples, const OddsTerms& weights) {
   std::vector<double> odds;
+  odds.reserve(samples.size());
   for (const OddsSample& s : samples) odds.push_back(weights.dot(s.terms));
   return odds;
 }
@@ -162,6 +163,7 @@ std::vector<double> stated_by_others(const std::vector<OddsSample>& samples) {
     weights.at(static_cast<std::size_t>(fold)) = fit_odds(others);
   }
   std::vector<double> odds;
+  odds.reserve(samples.size());
   for (const OddsSample& s : samples)
     odds.push_back(weights.at(static_cast<std::size_t>(s.home % kFolds)).dot(s.terms));
   return odds;
@@ -223,12 +225,26 @@ void add_claims(const std::string& row, const std::vector<OddsSample>& samples, 
     wrong += samples[i].wrong ? 1.0 / kPerHome : 0.0;
   }
   std::vector<double> claimed, wrong;
+  claimed.reserve(homes.size());
+  wrong.reserve(homes.size());
   for (const int home : homes) {
     claimed.push_back(by_home[home].first);
     wrong.push_back(by_home[home].second);
   }
   report.rows.push_back(mean_row(row, "claimed", "", claimed, report.seed));
   report.rows.push_back(mean_row(row, "claimed and wrong", "", wrong, report.seed));
+}
+
+/// The configured weights beside those that these poses give.
+void add_weights(const std::vector<OddsSample>& samples, const localization::GateParameters& configured,
+                 Report& report) {
+  const OddsTerms fitted = fit_odds(samples);
+  for (std::size_t i = 0; i < kOddsTerms.size(); ++i) {
+    const auto term = static_cast<Eigen::Index>(i);
+    const std::string name(kOddsTerms.at(i));
+    report.rows.push_back(plain_row(name, "as configured", "", odds_weights(configured)[term], samples.size()));
+    report.rows.push_back(plain_row(name, "fitted", "", fitted[term], samples.size()));
+  }
 }
 
 }  // namespace
@@ -274,21 +290,14 @@ Result<Report> gate_reliability(const Setting& setting) {
   add_reliability("fitted to the other homes", samples, stated_by_others(samples), report, plot);
   plot.curves.push_back({"ideal", {{0.0, 0.0, {}}, {1.0, 1.0, {}}}});
   report.plots.push_back(std::move(plot));
-  const OddsTerms fitted = fit_odds(samples);
-  for (std::size_t i = 0; i < kOddsTerms.size(); ++i) {
-    const auto term = static_cast<Eigen::Index>(i);
-    const std::string name(kOddsTerms.at(i));
-    report.rows.push_back(plain_row(name, "as configured", "", odds_weights(shipped)[term], samples.size()));
-    report.rows.push_back(plain_row(name, "fitted", "", fitted[term], samples.size()));
-  }
+  add_weights(samples, shipped, report);
   report.notes = {
       fmt::format("{} poses in each home, as in false-corrections: ten with the right map and at least six edges, two "
                   "with a perfect copy, four with people or furniture in front, three with a wrong map, one with at "
                   "most two edges, and as many priors of 1, 2, 3 and 5 times the stated width as 4 : 1 : 1 : 1.",
                   kPerHome),
-      "Wrong: more than 5 cm or 1.5 degrees off. Claimed: of all poses drawn, intervals over homes; those of 'wrong' "
-      "are "
-      "over poses.",
+      "Wrong: more than 5 cm or 1.5 degrees off; intervals over poses. Claimed: of all poses drawn; intervals over "
+      "homes.",
       fmt::format(
           "Fitted to the other homes: a logistic regression on the same terms in {} folds of homes; log loss is "
           "what it is judged by.",

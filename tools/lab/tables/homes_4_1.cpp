@@ -180,23 +180,26 @@ Result<Report> homes_4_1(const Setting& setting) {
   }
   add_reliability(trials.contenders()[kWithoutLimit].name, trials.figures(kWithoutLimit), report);
   const double poses = std::max(1, setting.trials * kPerHome);
-  report.notes = {
-      fmt::format("A trial is a home of its own (`cgsr sim home`) with {} poses; figures are means over "
-                  "homes of each home's mean, intervals "
-                  "are over homes.",
-                  kPerHome),
-      fmt::format("Every pose sees at least six edges of 20 px of what the map holds, {:.0f} in the mean, "
-                  "by rays cast in the simulator; what "
-                  "lies about is in no map. Its prior is off by N(0, 15 cm) along each axis of the floor, "
-                  "4 degrees of heading, 1 of tilt.",
-                  trials.edges_seen() / poses),
-      "Told is a calibrated copy per home: intrinsics off by 0.2 % and 0.5 px, mount by 0.3 degrees about "
-      "each axis, map by 0.5 cm per rigid "
-      "part. Noise and lens distortion are on.",
-      "False: corrected is claimed and the pose is more than 5 cm or 1.5 degrees off, however bad the "
-      "prior was. Plain EM has no gate.",
-      "Without a limit on log-odds: whatever is stated of an error's probability; 'wrong where' is the share of "
-      "these claims that is false, by what is stated of them."};
+  report.notes = {fmt::format("A trial is a home of its own (`cgsr sim home`) with {} poses; figures are means over "
+                              "homes of each home's mean, intervals "
+                              "are over homes.",
+                              kPerHome),
+                  fmt::format("Every pose sees at least six edges of 20 px of what the map holds, {:.0f} in the mean, "
+                              "by rays cast in the simulator; what "
+                              "lies about is in no map. Its prior is off by N(0, 15 cm) along each axis of the floor, "
+                              "4 degrees of heading, 1 of tilt.",
+                              trials.edges_seen() / poses)};
+  report.notes.emplace_back(
+      "Told is a calibrated copy per home: intrinsics off by 0.2 % and 0.5 px, mount by 0.3 degrees about each axis, "
+      "map "
+      "by 0.5 cm per rigid part. Noise and lens distortion are on.");
+  report.notes.emplace_back(
+      "False: corrected is claimed and the pose is more than 5 cm or 1.5 degrees off, however bad the prior was. Plain "
+      "EM "
+      "has no gate.");
+  report.notes.emplace_back(
+      "Without a limit on log-odds: whatever is stated of an error's probability; 'wrong where' is the share of these "
+      "claims that is false, by what is stated of them.");
   for (const std::size_t c : {0U, 1U}) {
     report.notes.push_back(trials.figures(c).tally.refusals(trials.contenders()[c].name));
   }
