@@ -34,18 +34,21 @@ bool holds_about(const Row& row) {
   return !row.interval && *eased.met();
 }
 
+Result<Report> measured(const char* table, int trials, std::uint64_t seed) {
+  Setting setting;
+  setting.seed = seed;
+  setting.trials = trials;
+  setting.count = false;
+  return measure(*experiment_of(table), setting);
+}
+
 class Requirements : public ::testing::TestWithParam<Small> {
  private:
   test::ScratchCache cache_;  // the tables keep rendered images
 };
 
 TEST_P(Requirements, HoldOnAFewFixedTrials) {
-  Setting setting;
-  setting.seed = GetParam().seed;
-  setting.trials = GetParam().trials;
-  setting.count = false;
-
-  const auto report = measure(*experiment_of(GetParam().table), setting);
+  const auto report = measured(GetParam().table, GetParam().trials, GetParam().seed);
 
   ASSERT_TRUE(report) << report.error().message;
   int judged = 0;
@@ -66,11 +69,7 @@ std::string name_of_case(const ::testing::TestParamInfo<Small>& info) {
 // What the homes hold is not required here: their table says what is met and what is not. One home keeps the table running.
 TEST(DrawnHomes, AreMeasuredByHome) {
   const test::ScratchCache cache;
-  Setting setting;
-  setting.seed = 7;
-  setting.trials = 1;
-  setting.count = false;
-  const auto report = measure(*experiment_of("homes-4.1"), setting);
+  const auto report = measured("homes-4.1", 1, 7);
   ASSERT_TRUE(report) << report.error().message;
   int rows = 0;
   for (const Row& row : report->rows) {
@@ -87,11 +86,7 @@ TEST(DrawnHomes, AreMeasuredByHome) {
 // The reliability of the gate likewise: one home, whose poses are all accounted for.
 TEST(GateReliability, IsMeasuredByHome) {
   const test::ScratchCache cache;
-  Setting setting;
-  setting.seed = 7;
-  setting.trials = 1;
-  setting.count = false;
-  const auto report = measure(*experiment_of("gate-reliability"), setting);
+  const auto report = measured("gate-reliability", 1, 7);
   ASSERT_TRUE(report) << report.error().message;
   int searched = 0;
   bool claimed = false;
