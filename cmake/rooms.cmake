@@ -14,10 +14,10 @@ function(cgsr_kernels)
 endfunction()
 
 # cgsr_test(NAME sources… DEPENDS targets… [LABEL …]): one test program per folder, each TEST() a ctest of its own. LABEL: unit (default), sim,
-# app, or slow, which only tools/test --long runs. UNOPTIMIZED: the test itself computes little, so compiling it quickly counts for more; what it
+# app, or slow, which only tools/test --long runs; SLOW: the tests of that name alone (gtest's filter). UNOPTIMIZED: the test itself computes little, so compiling it quickly counts for more; what it
 # tests is optimised all the same.
 function(cgsr_test name)
-  cmake_parse_arguments(ARG "UNOPTIMIZED" "TIMEOUT;LABEL" "DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "UNOPTIMIZED" "TIMEOUT;LABEL;SLOW" "DEPENDS" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -30,7 +30,13 @@ function(cgsr_test name)
     target_compile_options(test_${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O0>)
     set_target_properties(test_${name} PROPERTIES CGSR_UNOPTIMIZED ON)
   endif()
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}: DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120
+  set(filter "")
+  if(ARG_SLOW)
+    set(filter TEST_FILTER -${ARG_SLOW})
+    gtest_discover_tests(test_${name} TEST_PREFIX ${name}: TEST_LIST ${name}_slow TEST_FILTER ${ARG_SLOW} DISCOVERY_MODE PRE_TEST
+                         DISCOVERY_TIMEOUT 120 PROPERTIES LABELS slow TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
+  endif()
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}: ${filter} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120
                        PROPERTIES LABELS "${ARG_LABEL}" TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "SKIPPED")
 endfunction()
 include(GoogleTest)
