@@ -124,7 +124,7 @@ tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::pat
   if (bytes.size() != size) return unreadable(path, "cannot be read");
   try {
     const json file = json::from_cbor(bytes);
-    if (file.at("format").get<std::string>() != kFormat) return damaged(path, "it is something else");
+    if (!file.is_object() || file.value("format", "") != kFormat) return damaged(path, "it is something else");
     if (const int version = file.at("version").get<int>(); version > kIdentitiesVersion) {
       return unreadable(path, fmt::format("version {} is newer than this program's {}", version, kIdentitiesVersion));
     }

@@ -92,6 +92,14 @@ TEST_F(IdentitiesFile, RefusesEveryDamageAndKeepsTheFileAside) {
   }
 }
 
+// Text that is taken for CBOR of another type too.
+TEST_F(IdentitiesFile, SaysOfAnotherFileThatItIsNone) {
+  write("garbage\n");
+  const auto read = load_identities(file_);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("it is something else"), std::string::npos) << read.error().message;
+}
+
 TEST_F(IdentitiesFile, KeepsAThousandPeople) {
   ASSERT_TRUE(save_identities(some(1000), file_));
   const auto read = load_identities(file_);
