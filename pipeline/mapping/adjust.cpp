@@ -65,13 +65,21 @@ struct Place {
   }
 };
 
-/// Two corners move alike.
+/// Two corners keep their distance, and move alike across it.
 struct Together {
   Eigen::Vector3d between;
-  double sigma_m;
+  Eigen::Matrix3d root;  ///< of the information.
+  explicit Together(const Tie& tie, const Eigen::Vector3d& d) : between(d) {
+    const double length = d.norm();
+    const Eigen::Vector3d along = length > 0.0 ? Eigen::Vector3d(d / length) : Eigen::Vector3d::Zero();
+    root = (Eigen::Matrix3d::Identity() - along * along.transpose()) / tie.across_m +
+           along * along.transpose() / tie.along_m;
+  }
   template <class T>
   bool operator()(const T* a, const T* b, T* residual) const {
-    for (int k = 0; k < 3; ++k) residual[k] = (b[k] - a[k] - between[k]) / sigma_m;
+    Vector3<T> off;
+    for (int k = 0; k < 3; ++k) off[k] = b[k] - a[k] - between[k];
+    Eigen::Map<Vector3<T>>(residual, 3) = root.cast<T>() * off;
     return true;
   }
 };
@@ -98,6 +106,21 @@ struct GivenPose {
   bool operator()(const T* step, T* residual) const {
     Eigen::Matrix<T, 6, 1> off;
     for (int k = 0; k < 6; ++k) off[k] = step[k] - to_given[k];
+    Eigen::Map<Eigen::Matrix<T, 6, 1>>(residual, 6) = root.cast<T>() * off;
+    return true;
+  }
+};
+
+/// The errors of given poses that follow each other, a stationary Gauss-Markov sequence: the second is what is left of the first, and what is new
+///   e_i = keep e_(i-1) + N(0, (1 - keep^2) S)
+struct LastingError {
+  geometry::Vector6d to_before, to_now;
+  geometry::Matrix6d root;  ///< of the information of what is new in the second.
+  double keep;
+  template <class T>
+  bool operator()(const T* before, const T* now, T* residual) const {
+    Eigen::Matrix<T, 6, 1> off;
+    for (int k = 0; k < 6; ++k) off[k] = (to_now[k] - now[k]) - keep * (to_before[k] - before[k]);
     Eigen::Map<Eigen::Matrix<T, 6, 1>>(residual, 6) = root.cast<T>() * off;
     return true;
   }
@@ -146,7 +169,7 @@ class Adjustment {
       problem_.AddResidualBlock(cost<Place, 3, 3>({measured[i], map_->sigmas()[i]}), nullptr, corner(i));
     }
     for (const Tie& tie : map_->ties()) {
-      problem_.AddResidualBlock(cost<Together, 3, 3, 3>({measured[tie.b] - measured[tie.a], tie.sigma_m}), nullptr,
+      problem_.AddResidualBlock(cost<Together, 3, 3, 3>(Together(tie, measured[tie.b] - measured[tie.a])), nullptr,
                                 corner(tie.a), corner(tie.b));
     }
     for (const Contact& contact : map_->contacts()) {
@@ -164,11 +187,7 @@ class Adjustment {
   void add_poses() {
     for (std::size_t i = 0; i < views_.size(); ++i) {
       const View& view = views_[i];
-      const geometry::Matrix6d information =
-          view.given.covariance.inverse() / std::max(1.0, parameters_->correlated_images);
-      const geometry::Matrix6d root = information.llt().matrixU();
-      problem_.AddResidualBlock(cost<GivenPose, 6, 6>({geometry::step_between(view.X_WC, view.given.X_WC), root}),
-                                nullptr, step(i));
+      add_given(i);
       if (i == 0 || !view.X_CB) continue;
       const double way = view.X_CB->translation().norm();
       const double turn = Eigen::AngleAxisd(view.X_CB->linear()).angle();
@@ -178,6 +197,23 @@ class Adjustment {
           cost<Odometry, 6, 6, 6>({views_[i - 1].X_WC, view.X_WC, *view.X_CB, sigma_m, sigma_rad}), nullptr,
           step(i - 1), step(i));
     }
+  }
+
+  void add_given(std::size_t i) {
+    const View& view = views_[i];
+    const geometry::Vector6d to_given = geometry::step_between(view.X_WC, view.given.X_WC);
+    const geometry::Matrix6d information = view.given.covariance.inverse();
+    if (i == 0) {
+      problem_.AddResidualBlock(cost<GivenPose, 6, 6>({to_given, information.llt().matrixU()}), nullptr, step(i));
+      return;
+    }
+    const View& before = views_[i - 1];
+    const double images = static_cast<double>(std::max<std::int64_t>(1, view.number - before.number));
+    const double keep = std::exp(-2.0 * images / std::max(1.0, parameters_->correlated_images));
+    const geometry::Matrix6d root = (information / (1.0 - keep * keep)).llt().matrixU();
+    problem_.AddResidualBlock(
+        cost<LastingError, 6, 6, 6>({geometry::step_between(before.X_WC, before.given.X_WC), to_given, root, keep}),
+        nullptr, step(i - 1), step(i));
   }
 
   void add_matches(std::span<const LineMatch> matches, const geometry::Camera& camera) {

@@ -68,6 +68,7 @@ Result<ElasticMap> ElasticMap::make(const ObjMap& file, world::Map map, const Re
   ElasticMap made;
   made.map_ = std::move(map);
   if (auto found = made.find_corners(file); !found) return tl::unexpected(found.error());
+  made.corners_ = made.measured_;
   made.find_parts(file);
   made.tie(file, parameters);
   made.find_contacts(parameters);
@@ -127,6 +128,12 @@ void ElasticMap::find_parts(const ObjMap& file) {
   }
 }
 
+Tie ElasticMap::tie_between(std::uint32_t a, std::uint32_t b, const RefineParameters& parameters) const {
+  const double length = (measured_[a] - measured_[b]).norm();
+  return {a, b, std::hypot(parameters.shape_sigma_m, parameters.size_share * length),
+          std::hypot(parameters.shape_sigma_m, parameters.turn_sigma_rad * length)};
+}
+
 void ElasticMap::tie(const ObjMap& file, const RefineParameters& parameters) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> tied;
   std::vector<std::uint32_t> object_of(measured_.size(), 0);
@@ -142,8 +149,7 @@ void ElasticMap::tie(const ObjMap& file, const RefineParameters& parameters) {
     }
   }
   for (const auto& [a, b] : tied) {
-    const double by_turn = parameters.turn_sigma_rad * (measured_[a] - measured_[b]).norm();
-    ties_.push_back({a, b, std::hypot(parameters.shape_sigma_m, by_turn)});
+    ties_.push_back(tie_between(a, b, parameters));
   }
   for (const Part& part : parts_) tie_nearest(object_of, part, parameters);
 }
@@ -163,7 +169,7 @@ void ElasticMap::tie_nearest(const std::vector<std::uint32_t>& object_of, const 
       }
     }
     if (with == a) continue;
-    ties_.push_back({a, with, std::hypot(parameters.shape_sigma_m, parameters.turn_sigma_rad * nearest)});
+    ties_.push_back(tie_between(a, with, parameters));
   }
 }
 
@@ -198,6 +204,7 @@ std::array<std::uint32_t, 2> ElasticMap::ends_of(std::uint32_t edge) const {
 }
 
 void ElasticMap::move(const std::vector<Eigen::Vector3d>& corners) {
+  corners_ = corners;
   for (std::size_t i = 0; i < map_.vertices.size(); ++i) {
     map_.vertices[i] = corners[corner_of_vertex_[i]].cast<float>();
   }

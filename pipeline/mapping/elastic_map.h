@@ -14,11 +14,12 @@
 
 namespace cgsr::mapping {
 
-/// Two corners of one part: how they move against each other is N(0, sigma_m) along each axis.
+/// Two corners of one part: standard deviations of how they move against each other.
 struct Tie {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  double sigma_m = 0.01;
+  double along_m = 0.01;   ///< along the line between them: the part is larger or smaller.
+  double across_m = 0.01;  ///< across it: the part is turned.
 };
 
 /// A corner that lies on another part's triangle: it stays there.
@@ -45,6 +46,7 @@ class ElasticMap {
   [[nodiscard]] const std::vector<Eigen::Vector3d>& measured() const {
     return measured_;
   }  ///< where the file has the corners, W [m].
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& corners() const { return corners_; }  ///< where they are now.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] const std::vector<Tie>& ties() const { return ties_; }
   [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
@@ -70,11 +72,13 @@ class ElasticMap {
   Result<void> find_corners(const ObjMap& file);
   void find_parts(const ObjMap& file);
   void tie(const ObjMap& file, const RefineParameters& parameters);
+  [[nodiscard]] Tie tie_between(std::uint32_t a, std::uint32_t b, const RefineParameters& parameters) const;
   void tie_nearest(const std::vector<std::uint32_t>& object_of, const Part& part, const RefineParameters& parameters);
   void find_contacts(const RefineParameters& parameters);
 
   world::Map map_;
   std::vector<Eigen::Vector3d> measured_;
+  std::vector<Eigen::Vector3d> corners_;
   std::vector<std::uint32_t> corner_of_point_;
   std::vector<std::uint32_t> corner_of_vertex_;
   std::vector<std::uint32_t> part_of_;

@@ -6,20 +6,21 @@ namespace cgsr::mapping {
 
 /// How a map is refined. Pixels are those of the grey image worked on: 320x240 for a 640x480 camera. Ours.
 struct RefineParameters {
-  double map_sigma_m = 0.05;    ///< how far a part is from where the map has it, along each axis.
-  double shape_sigma_m = 0.01;  ///< how far two corners of one part are off against each other,
-  double turn_sigma_rad =
-      0.02;  ///< and besides for each metre between them: a part may be turned or wrong in its size.
+  double map_sigma_m = 0.05;     ///< how far a part is from where the map has it, along each axis.
+  double shape_sigma_m = 0.003;  ///< how far two corners of one part are off against each other,
+  double size_share = 0.005;     ///< besides, of their distance, along it: a part may be wrong in its size,
+  double turn_sigma_rad = 0.02;  ///< and across it: it may be turned.
   double contact_sigma_m =
       0.002;  ///< what lies or stands on another part stays on it: its distance from that part's surface.
   double lies_on_m = 0.004;    ///< what is at most this far from a surface lies on it.
   double line_sigma_px = 0.6;  ///< of a perceived line against the map's, besides the line's own.
   double robust = 2.0;         ///< Cauchy's constant in sigmas: further out a distance counts less and less.
   std::array<float, 7> radius_px{24.0F, 24.0F, 16.0F, 10.0F, 7.0F, 5.0F, 4.0F};  ///< of a match, round by round.
-  double correlated_images = 40.0;  ///< so many images share the error of their given poses: together they count once.
-  double odometry_share = 0.03;     ///< of the way between two images, what odometry is off by ...
-  double odometry_m = 0.002;        ///< ... and at least,
-  double odometry_rad = 0.01;       ///< of a turn by nothing, and besides
+  double correlated_images =
+      40.0;  ///< so many images share the error of their given poses, and together count once; it fades with half of that.
+  double odometry_share = 0.03;       ///< of the way between two images, what odometry is off by ...
+  double odometry_m = 0.002;          ///< ... and at least,
+  double odometry_rad = 0.01;         ///< of a turn by nothing, and besides
   double odometry_turn_share = 0.05;  ///< of the turn.
   int max_steps = 12;                 ///< of the solver, a round.
   int max_pieces = 2000;              ///< of edges that an image is expected to show.

@@ -16,8 +16,8 @@ constexpr double kReach_sigmas = 2.6;  // of a part's place
 constexpr double kStep_m = 0.02;
 constexpr double kFineStep_m = 0.006;
 constexpr int kFineSteps = 3;
-constexpr double kPriorShare = 0.03;  // of what is expected, that a shift by one sigma costs
-constexpr double kClearly = 0.06;     // of what is expected, that another place must find more
+constexpr double kPriorShare = 0.03;  // of what is expected, that a place one sigma from the measured one costs
+constexpr double kClearly = 0.03;     // of what is expected, that another place must find more
 constexpr float kAngle_rad = 0.15F;
 constexpr double kLongest_px = 60.0;  // of an edge, that counts
 constexpr double kNearest_m = 0.1;
@@ -32,12 +32,20 @@ struct Stretch {
   double weight = 1.0;
 };
 
+/// How far a part is from where it was measured.
+Eigen::Vector3d mean_move(const ElasticMap& map, const Part& part) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::uint32_t corner : part.corners) sum += map.corners()[corner] - map.measured()[corner];
+  return sum / static_cast<double>(part.corners.size());
+}
+
 class PartSearch {
  public:
   PartSearch(const ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
              const RefineParameters& parameters, double sharpness_px)
       : views_(views), camera_(camera), sigma_m_(parameters.map_sigma_m), sharpness_px_(sharpness_px) {
     stretches_.resize(map.parts().size());
+    for (const Part& part : map.parts()) moved_.push_back(mean_move(map, part));
     render::RasterParameters raster_parameters;
     raster_parameters.max_pieces = parameters.max_pieces;
     raster_parameters.max_edges = raster_parameters.max_surfaces = 20'000;
@@ -65,7 +73,7 @@ class PartSearch {
     double expected = 0.0;
     for (const Stretch& stretch : stretches) expected += stretch.weight * length_of(stretch);
     const auto score = [&](const Eigen::Vector3d& d) {
-      double sum = -kPriorShare * expected * d.squaredNorm() / (sigma_m_ * sigma_m_);
+      double sum = -kPriorShare * expected * (moved_[part] + d).squaredNorm() / (sigma_m_ * sigma_m_);
       for (const Stretch& stretch : stretches) sum += stretch.weight * found(stretch, d);
       return sum;
     };
@@ -152,6 +160,7 @@ class PartSearch {
   geometry::Camera camera_;
   double sigma_m_;
   double sharpness_px_;
+  std::vector<Eigen::Vector3d> moved_;
   std::vector<std::vector<Stretch>> stretches_;
 };
 

@@ -6,8 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "pipeline/localization/expected.h"
-#include "pipeline/render/depth_raster.h"
+#include "pipeline/mapping/loose_edges.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -45,20 +44,9 @@ class Proposer {
 
   /// Of every view what runs along no edge of the map.
   void collect(const ElasticMap& map, const RefineParameters& refined_with) {
-    render::RasterParameters raster_parameters;
-    raster_parameters.max_pieces = refined_with.max_pieces;
-    raster_parameters.max_edges = raster_parameters.max_surfaces = 20'000;
-    raster_parameters.max_triangles = raster_parameters.max_visited = 100'000;
-    render::DepthRaster raster(map.map(), raster_parameters);
-    localization::ExpectedView expected(map.map(), static_cast<std::size_t>(refined_with.max_pieces));
-    std::vector<render::VisiblePiece> visible;
-    visible.reserve(static_cast<std::size_t>(refined_with.max_pieces));
+    const auto edges = loose_edges(map, views_, camera_, p_, refined_with, p_.min_length_px);
     for (std::size_t i = 0; i < views_.size(); ++i) {
-      raster.look(views_[i].X_WC, camera_, visible);
-      expected.take(visible, views_[i].X_WC);
-      expected.project(views_[i].X_WC, camera_);
-      for (const localization::PerceivedEdge& edge : views_[i].edges.edges()) {
-        if (2.0F * edge.half_length < p_.min_length_px || explained(edge, expected.projected())) continue;
+      for (const localization::PerceivedEdge& edge : edges[i]) {
         loose_[i].push_back({edge.middle, edge.direction, edge.half_length});
       }
     }
@@ -84,18 +72,6 @@ class Proposer {
   struct Line {
     Vector3d a, b;
   };
-
-  [[nodiscard]] bool explained(const localization::PerceivedEdge& edge,
-                               std::span<const localization::ProjectedPiece> pieces) const {
-    return std::any_of(pieces.begin(), pieces.end(), [&](const localization::ProjectedPiece& piece) {
-      if (std::abs(piece.direction.dot(edge.normal())) > 2.0F * p_.angle_rad) return false;
-      const Vector2f offset = edge.middle - piece.middle;
-      const float depth = 0.5F * (piece.depth0_m + piece.depth1_m);
-      const float reach = std::max(p_.explained_px, static_cast<float>(camera_.fx_px * p_.explained_m) / depth);
-      const float across = std::abs(offset.dot(Vector2f(-piece.direction.y(), piece.direction.x())));
-      return across < reach && std::abs(offset.dot(piece.direction)) < piece.half_length + edge.half_length;
-    });
-  }
 
   [[nodiscard]] Vector3d ray(std::size_t view, const Vector2f& pixel) const {
     const Vector3d d((static_cast<double>(pixel.x()) - camera_.cx_px) / camera_.fx_px,
@@ -259,7 +235,7 @@ class Proposer {
     for (const Support& support : best) loose_[support.view][support.edge].used = true;
     const auto longest = std::ranges::max_element(
         best, {}, [&](const Support& support) { return loose_[support.view][support.edge].half_length; });
-    return Proposal{best_line.a, best_line.b, static_cast<int>(best.size()), rms, longest->view};
+    return Proposal{best_line.a, best_line.b, static_cast<int>(best.size()), rms, longest->view, {}};
   }
 
   [[nodiscard]] std::vector<Proposal> each_once(std::vector<Proposal> found) const {

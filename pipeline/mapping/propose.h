@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,6 +21,7 @@ struct Proposal {
   int images = 0;             ///< that support it.
   double rms_px = 0.0;        ///< of the perceived edges against it.
   std::size_t best_view = 0;  ///< index of the view that shows most of it.
+  std::string part = {};  ///< of the map, that was moved: the line is an edge of it; empty: the map does not hold it.
 };
 
 /// Finds edges that the map lacks: perceived edges that no edge of the map explains, in two images a line in space (the planes through both cameras

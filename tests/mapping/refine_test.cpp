@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/mapping/moved_parts.h"
 #include "pipeline/mapping/propose.h"
 #include "tests/mapping/furnished_room.h"
 
@@ -67,6 +68,47 @@ TEST(Refine, PutsThingsBackThatWereMeasuredWrongly) {
   }
 }
 
+// Poses that are all off by the same are taken to err together: what they say of the way between images stays.
+TEST(Refine, KeepsTheWayBetweenPosesWhoseErrorLasts) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  std::vector<geometry::Pose> true_poses;
+  auto views = views_of(text, 0.3, 0.0, 20, 4, &true_poses);
+  geometry::Vector6d off = geometry::Vector6d::Zero();
+  off.head<2>() << 0.06, -0.04;
+  for (View& view : views) {
+    view.given.X_WC = view.X_WC = geometry::moved(view.X_WC, off);
+    view.edges = localization::SegmentTable(1);  // and nothing else says where it was
+    view.X_CB.reset();
+  }
+  auto corners = map.measured();
+
+  const Adjusted adjusted = adjust(map, corners, views, {}, small_camera(), {}, false);
+
+  EXPECT_TRUE(adjusted.solved);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_LT((views[i].X_WC.translation() - views[i].given.X_WC.translation()).norm(), 1e-6) << i;
+  }
+}
+
+// A part may be turned more easily than it may be larger.
+TEST(ElasticMap, TiesHoldAPartsSizeMoreThanItsDirection) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  const ElasticMap map = elastic(*file, text);
+  ASSERT_FALSE(map.ties().empty());
+  const RefineParameters parameters;
+  for (const Tie& tie : map.ties()) {
+    const double length = (map.measured()[tie.a] - map.measured()[tie.b]).norm();
+    EXPECT_NEAR(tie.along_m, std::hypot(parameters.shape_sigma_m, parameters.size_share * length), 1e-12);
+    EXPECT_NEAR(tie.across_m, std::hypot(parameters.shape_sigma_m, parameters.turn_sigma_rad * length), 1e-12);
+    EXPECT_LE(tie.along_m, tie.across_m);
+  }
+}
+
 TEST(Refine, SaysHowWellACornerIsKnown) {
   const std::string text = room_as_obj();
   const auto file = parse_obj(text, "room");
@@ -110,6 +152,49 @@ TEST(Propose, FindsNothingWhereTheMapIsWhole) {
   const ElasticMap map = elastic(*file, text);
   const auto views = views_of(text, 0.2, 0.0, 60, 3);
   EXPECT_TRUE(propose_edges(map, views, small_camera(), {}, {}).empty());
+}
+
+// A chair that stands half a metre from where the map has it is found there, and its edges are proposed; the map keeps it where it was.
+TEST(MovedParts, FindsTheChairWhereItStandsNow) {
+  const auto truth = parse_obj(testing::chair_as_obj(), "room");
+  ASSERT_TRUE(truth);
+  auto points = truth->points;
+  for (const auto& face : truth->faces) {
+    if (truth->parts[face.part] != "chair") continue;
+    for (const std::uint32_t corner : face.corners)
+      points[corner] = truth->points[corner] + Eigen::Vector3d(0.4, 0.3, 0);
+  }
+  const std::string text = obj_text(*truth, points, {});
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  auto views = views_of(testing::chair_as_obj(), 0.2, 0.0, 60, 3);
+  refine(map, views, small_camera(), {});
+  const auto before = map.corners();
+
+  const auto moved = find_moved_parts(map, views, small_camera(), {});
+
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_EQ(map.parts()[moved[0].part].name, "chair");
+  Eigen::Vector3d now = Eigen::Vector3d::Zero();
+  for (const std::uint32_t corner : map.parts()[moved[0].part].corners) now += map.corners()[corner] / 8.0;
+  EXPECT_LT((now + moved[0].shift - Eigen::Vector3d(2.4, 2.0, 0.225)).norm(), 0.03);
+  EXPECT_GE(moved[0].edges.size(), 4U);
+  for (const Proposal& edge : moved[0].edges) {
+    EXPECT_EQ(edge.part, "chair");
+    EXPECT_LT(edge.rms_px, 2.0);
+    EXPECT_LT((edge.a - Eigen::Vector3d(2.4, 2.0, 0.225)).cwiseAbs().maxCoeff(), 0.26);
+  }
+  EXPECT_EQ(map.corners(), before);
+}
+
+TEST(MovedParts, FindsNoneWhereTheMapIsRight) {
+  const std::string text = testing::chair_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  const auto views = views_of(text, 0.2, 0.0, 60, 3);
+  EXPECT_TRUE(find_moved_parts(map, views, small_camera(), {}).empty());
 }
 
 TEST(ElasticMap, KnowsItsParts) {

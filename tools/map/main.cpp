@@ -1,13 +1,15 @@
-// cgsr-map: what `cgsr map refine` starts. Links Ceres, the robot's program does not.
+// cgsr-map: what `cgsr map refine` starts, and `cgsr map refine accept`. Links Ceres, the robot's program does not.
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
 #include "src/commands/option_checks.h"
 #include "src/commands/parse_error.h"
+#include "tools/map/accept_run.h"
 #include "tools/map/refine_run.h"
 
 namespace cgsr::app {
@@ -18,7 +20,28 @@ int complain(const Error& error) {
   return 1;
 }
 
-int run_command_line(int argc, char** argv) {
+int accept_command_line(int argc, char** argv) {
+  CLI::App app{"Draw edges that refine proposed, and that a person has looked at, into the map.",
+               "cgsr map refine accept"};
+  app.get_formatter()->column_width(34);
+  AcceptOptions options;
+  app.add_option("map", options.map, "the refined map: OBJ, metres, z up")->required();
+  app.add_option("--proposals", options.proposals, "lines that cgsr map refine --proposals wrote: .obj")->required();
+  app.add_option("--edges", options.numbers, "numbers of those that are real, as on the picture: 1,4")
+      ->required()
+      ->delimiter(',');
+  app.add_option("--output", options.output, "the map as the robot loads it: .cgsrmap")->required();
+  add_force_option(app, options.force);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& wrong) {
+    return report_parse_error(app, wrong, argc, argv);
+  }
+  const auto done = run_accept(options);
+  return done ? 0 : complain(done.error());
+}
+
+int refine_command_line(int argc, char** argv) {
   CLI::App app{"Move a map's parts to where the images of a drive show them, and propose edges that it lacks.",
                "cgsr map refine"};
   app.get_formatter()->column_width(34);
@@ -50,6 +73,7 @@ int run_command_line(int argc, char** argv) {
       ->check(in_range(0.01, 90.0))
       ->capture_default_str();
   add_force_option(app, options.force);
+  app.footer("cgsr map refine accept --help: how proposals that are real get into the map.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& wrong) {
@@ -64,7 +88,8 @@ int run_command_line(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return cgsr::app::run_command_line(argc, argv);
+    const bool accepts = argc > 1 && std::string_view(argv[1]) == "accept";
+    return accepts ? cgsr::app::accept_command_line(argc - 1, argv + 1) : cgsr::app::refine_command_line(argc, argv);
   } catch (const std::exception& surprise) {
     return cgsr::app::complain(cgsr::Error{std::string("unexpected: ") + surprise.what()});
   }

@@ -50,8 +50,8 @@ void draw_cell(const mapping::Proposal& proposal, int number, const cv::Mat& ima
   cv::Mat place = cell.rowRange(kCaption_px, cell.rows);
   cv::resize(picture, place, place.size(), 0.0, 0.0, cv::INTER_AREA);
   const std::string words =
-      fmt::format("{}: {:.2f} m, in {} images, {:.1f} px off (image {})", number, (proposal.b - proposal.a).norm(),
-                  proposal.images, proposal.rms_px, view.number);
+      fmt::format("{}: {:.2f} m, in {} images, {:.1f} px off (image {}) {}", number, (proposal.b - proposal.a).norm(),
+                  proposal.images, proposal.rms_px, view.number, proposal.part);
   cv::putText(cell, words, {6, 20}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kBehind, 1, cv::LINE_AA);
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pipeline/localization/perceive.h"
+#include "pipeline/mapping/moved_parts.h"
 #include "pipeline/mapping/obj_map.h"
 #include "pipeline/mapping/propose.h"
 #include "pipeline/mapping/refine.h"
@@ -23,6 +24,7 @@
 #include "src/output/picture.h"
 #include "src/output/progress.h"
 #include "src/output/text_file.h"
+#include "tools/map/proposal_file.h"
 #include "tools/map/proposal_sheet.h"
 
 namespace cgsr::app {
@@ -132,7 +134,8 @@ double mean_over(const mapping::Part& part, const std::vector<double>& values) {
 }
 
 nlohmann::ordered_json report_of(const mapping::ElasticMap& map, const mapping::Refined& refined,
-                                 const std::vector<mapping::Proposal>& proposals, const Drive& drive,
+                                 const std::vector<mapping::Proposal>& proposals,
+                                 const std::vector<mapping::MovedPart>& moved_parts, const Drive& drive,
                                  double map_sigma_m) {
   nlohmann::ordered_json json;
   json["images"] = drive.views.size();
@@ -164,7 +167,16 @@ nlohmann::ordered_json report_of(const mapping::ElasticMap& map, const mapping::
     json["proposals"].push_back({{"a_m", {line.a.x(), line.a.y(), line.a.z()}},
                                  {"b_m", {line.b.x(), line.b.y(), line.b.z()}},
                                  {"images", line.images},
-                                 {"rms_px", line.rms_px}});
+                                 {"rms_px", line.rms_px},
+                                 {"of_moved_part", line.part}});
+  }
+  json["moved_parts"] = nlohmann::ordered_json::array();
+  for (const mapping::MovedPart& part : moved_parts) {
+    json["moved_parts"].push_back({{"name", map.parts()[part.part].name},
+                                   {"shift_m", {part.shift.x(), part.shift.y(), part.shift.z()}},
+                                   {"share_here", part.share_here},
+                                   {"share_there", part.share_there},
+                                   {"images", part.images}});
   }
   return json;
 }
@@ -178,21 +190,11 @@ void print(const nlohmann::ordered_json& json) {
                100.0 * part["moved_m"].get<double>(), 100.0 * sigma, part["observations"].get<int>(),
                part["edges_not_seen"].get<int>());
   }
-  fmt::print("{} new edges proposed, nothing removed\n", json["proposals"].size());
-}
-
-/// Lines of OBJ: what a person keeps of them he draws into his map as faces.
-std::string proposals_as_obj(const std::vector<mapping::Proposal>& proposals) {
-  std::string text = "# edges that many images show and the map does not hold, by cgsr map refine\n";
-  int count = 0;
-  for (const mapping::Proposal& line : proposals) {
-    text += fmt::format("o proposal_{}_seen_in_{}_images\n", count / 2 + 1, line.images);
-    for (const Eigen::Vector3d& p : {line.a, line.b})
-      text += fmt::format("v {:.4f} {:.4f} {:.4f}\n", p.x(), p.y(), p.z());
-    text += fmt::format("l {} {}\n", count + 1, count + 2);
-    count += 2;
+  for (const auto& part : json["moved_parts"]) {
+    fmt::print("{} seems to stand ({:.2f}, {:.2f}) m from where the map has it: its edges there are proposed\n",
+               part["name"].get<std::string>(), part["shift_m"][0].get<double>(), part["shift_m"][1].get<double>());
   }
-  return text;
+  fmt::print("{} new edges proposed, nothing removed\n", json["proposals"].size());
 }
 
 std::filesystem::path from_output_to_map(const RefineOptions& options) {
@@ -219,7 +221,11 @@ Result<void> run_refine(const RefineOptions& options) {
   const auto refined =
       mapping::refine(*map, drive->views, drive->camera, options.parameters,
                       [&](int round, const mapping::Adjusted&) { progress.show(fmt::format("round {}", round + 1)); });
-  const auto proposals = mapping::propose_edges(*map, drive->views, drive->camera, {}, options.parameters);
+  auto proposals = mapping::propose_edges(*map, drive->views, drive->camera, {}, options.parameters);
+  const auto moved = mapping::find_moved_parts(*map, drive->views, drive->camera, options.parameters);
+  for (const mapping::MovedPart& part : moved) {
+    proposals.insert(proposals.end(), part.edges.begin(), part.edges.end());
+  }
   const auto text = mapping::obj_text(*file, map->points(*file, refined.corners), from_output_to_map(options));
   if (auto written = write_file(options.output, text); !written) return written;
   if (!options.proposals.empty()) {
@@ -230,7 +236,7 @@ Result<void> run_refine(const RefineOptions& options) {
     if (!sheet) return tl::unexpected(sheet.error());
     if (auto written = write_picture(options.picture, *sheet); !written) return written;
   }
-  const auto json = report_of(*map, refined, proposals, *drive, options.parameters.map_sigma_m);
+  const auto json = report_of(*map, refined, proposals, moved, *drive, options.parameters.map_sigma_m);
   if (!options.json.empty()) {
     if (auto written = write_file(options.json, json.dump(1) + "\n"); !written) return written;
   }

@@ -135,8 +135,15 @@ constexpr std::array kRequirements{
     NamedRequirement{"table-4.2", "3725 edges, half in view, ours", "worst", at_most(13.0)},
     NamedRequirement{"table-4.2", "100000 edges, others behind, ours", "mean", at_most(16.0)},
     NamedRequirement{"table-4.2", "1000000 edges, others behind, ours", "mean", at_most(20.0)},
-    NamedRequirement{"map-refine", "each part off", "corners after", at_most(1.5)},
-    NamedRequirement{"map-refine", "each part off", "moved chair proposed", at_least(1.0)},
+    NamedRequirement{
+        "map-refine", "each part off", "corners after", at_most(1.5),
+        "with every match right, 2.5 cm were left in four homes: 1.3 cm once a shift common to a home, which no "
+        "image shows, is taken out. Besides, parts among lines that repeat (racks, sills, skirtings, walls of "
+        "which one edge is seen) settle on a wrong line"},
+    NamedRequirement{
+        "map-refine", "each part off", "moved chair proposed", at_least(1.0),
+        "a moved piece counts where six images or more show it; a drive shows some in fewer, and of a round "
+        "stool no straight edge that is long enough"},
     NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "below 1 % and 1 degree",
                      at_least(0.95)},
     NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "below 1 % and 1 degree",
