@@ -142,8 +142,9 @@ constexpr std::array kRequirements{
         "which one edge is seen) settle on a wrong line"},
     NamedRequirement{
         "map-refine", "each part off", "moved chair proposed", at_least(1.0),
-        "a moved piece counts where six images or more show it; a drive shows some in fewer, and of a round "
-        "stool no straight edge that is long enough"},
+        "a moved piece is looked for on a grid with nothing before it and counts where six images or more show "
+        "some of it: one that others hide most of is missed, and of a round stool no edge is straight and long "
+        "enough"},
     NamedRequirement{"real-localization", "Castle-simu, from 2 % and 2 degrees, ours", "below 1 % and 1 degree",
                      at_least(0.95)},
     NamedRequirement{"real-localization", "Castle-simu, from 5 % and 5 degrees, ours", "below 1 % and 1 degree",
