@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "pipeline/localization/expected.h"
-#include "pipeline/render/depth_raster.h"
+#include "pipeline/mapping/map_view.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -28,19 +28,10 @@ std::vector<std::vector<localization::PerceivedEdge>> loose_edges(const ElasticM
                                                                   const ProposeParameters& parameters,
                                                                   const RefineParameters& refined_with,
                                                                   float min_length_px) {
-  render::RasterParameters raster_parameters;
-  raster_parameters.max_pieces = refined_with.max_pieces;
-  raster_parameters.max_edges = raster_parameters.max_surfaces = 20'000;
-  raster_parameters.max_triangles = raster_parameters.max_visited = 100'000;
-  render::DepthRaster raster(map.map(), raster_parameters);
-  localization::ExpectedView expected(map.map(), static_cast<std::size_t>(refined_with.max_pieces));
-  std::vector<render::VisiblePiece> visible;
-  visible.reserve(static_cast<std::size_t>(refined_with.max_pieces));
+  MapView shown(map, camera, refined_with);
   std::vector<std::vector<localization::PerceivedEdge>> loose(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
-    raster.look(views[i].X_WC, camera, visible);
-    expected.take(visible, views[i].X_WC);
-    expected.project(views[i].X_WC, camera);
+    const localization::ExpectedView& expected = shown.look(views[i].X_WC);
     for (const localization::PerceivedEdge& edge : views[i].edges.edges()) {
       if (2.0F * edge.half_length < min_length_px) continue;
       if (!runs_along_the_map(edge, expected.projected(), camera, parameters)) loose[i].push_back(edge);

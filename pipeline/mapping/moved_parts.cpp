@@ -7,7 +7,7 @@
 
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/segment_table.h"
-#include "pipeline/render/depth_raster.h"
+#include "pipeline/mapping/map_view.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -149,20 +149,11 @@ std::vector<std::vector<Stretch>> visible_of(const ElasticMap& map, std::uint32_
   for (const std::uint32_t corner : map.parts()[part].corners) {
     middle += map.corners()[corner] / static_cast<double>(map.parts()[part].corners.size());
   }
-  render::RasterParameters raster_parameters;
-  raster_parameters.max_pieces = parameters.max_pieces;
-  raster_parameters.max_edges = raster_parameters.max_surfaces = 20'000;
-  raster_parameters.max_triangles = raster_parameters.max_visited = 100'000;
-  render::DepthRaster raster(map.map(), raster_parameters);
-  localization::ExpectedView expected(map.map(), static_cast<std::size_t>(parameters.max_pieces));
-  std::vector<render::VisiblePiece> visible;
-  visible.reserve(static_cast<std::size_t>(parameters.max_pieces));
+  MapView shown(map, camera, parameters);
   std::vector<std::vector<Stretch>> stretches(views.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
     if (!finder.near(v, middle)) continue;
-    raster.look(views[v].X_WC, camera, visible);
-    expected.take(visible, views[v].X_WC);
-    expected.project(views[v].X_WC, camera);
+    const localization::ExpectedView& expected = shown.look(views[v].X_WC);
     for (const localization::ProjectedPiece& piece : expected.projected()) {
       const std::uint32_t edge = expected.pieces()[piece.piece].edge;
       if (map.part_of(map.ends_of(edge)[0]) != part) continue;

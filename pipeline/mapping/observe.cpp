@@ -5,7 +5,7 @@
 
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/matching.h"
-#include "pipeline/render/depth_raster.h"
+#include "pipeline/mapping/map_view.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -20,28 +20,22 @@ class Observer {
   Observer(const ElasticMap& map, const geometry::Camera& camera, const RefineParameters& parameters)
       : map_(&map),
         parameters_(&parameters),
-        camera_(camera),
-        raster_(map.map(), raster_parameters(parameters)),
-        view_(map.map(), static_cast<std::size_t>(parameters.max_pieces)),
-        matcher_(static_cast<std::size_t>(parameters.max_pieces), kMostPerceived) {
-    visible_.reserve(static_cast<std::size_t>(parameters.max_pieces));
-  }
+        shown_(map, camera, parameters),
+        matcher_(static_cast<std::size_t>(parameters.max_pieces), kMostPerceived) {}
 
   void take(std::uint32_t index, const View& view, float radius_px, Observed& observed) {
-    raster_.look(view.X_WC, camera_, visible_);
-    view_.take(visible_, view.X_WC);
-    view_.project(view.X_WC, camera_);
-    const auto pieces = view_.projected();
+    const localization::ExpectedView& expected = shown_.look(view.X_WC);
+    const auto pieces = expected.projected();
     const auto matches = matcher_.match(pieces, view.edges, {.radius_px = radius_px});
     std::vector<float> seen_px(pieces.size(), 0.0F);
     for (const localization::Match& match : matches) {
       seen_px[match.projected] += match.overlap_px();
-      observed.matches.push_back(line_match(index, view, match));
+      observed.matches.push_back(line_match(index, view, expected, match));
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const float length = 2.0F * pieces[i].half_length;
       if (length < kTelling_px) continue;
-      EdgeSeen& edge = observed.edges[view_.pieces()[pieces[i].piece].edge];
+      EdgeSeen& edge = observed.edges[expected.pieces()[pieces[i].piece].edge];
       ++edge.expected;
       edge.matched += seen_px[i] > 0.3F * length ? 1 : 0;
     }
@@ -51,14 +45,6 @@ class Observer {
   }
 
  private:
-  static render::RasterParameters raster_parameters(const RefineParameters& parameters) {
-    render::RasterParameters raster;
-    raster.max_pieces = parameters.max_pieces;
-    raster.max_edges = raster.max_surfaces = 20'000;
-    raster.max_triangles = raster.max_visited = 100'000;
-    return raster;
-  }
-
   [[nodiscard]] double place_on(std::uint32_t edge, const Eigen::Vector3d& p) const {
     const auto& vertices = map_->map().edges[edge].vertices;
     const Eigen::Vector3d a = map_->map().vertices[vertices[0]].cast<double>();
@@ -66,14 +52,15 @@ class Observer {
     return std::clamp((p - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
   }
 
-  [[nodiscard]] LineMatch line_match(std::uint32_t index, const View& view, const localization::Match& match) const {
-    const localization::ProjectedPiece& piece = view_.projected()[match.projected];
+  [[nodiscard]] LineMatch line_match(std::uint32_t index, const View& view, const localization::ExpectedView& expected,
+                                     const localization::Match& match) const {
+    const localization::ProjectedPiece& piece = expected.projected()[match.projected];
     const localization::PerceivedEdge& line = view.edges.edges()[match.perceived];
     LineMatch found;
     found.view = index;
-    found.edge = view_.pieces()[piece.piece].edge;
-    found.along = {place_on(found.edge, view_.point_at(piece, match.from_px)),
-                   place_on(found.edge, view_.point_at(piece, match.to_px))};
+    found.edge = expected.pieces()[piece.piece].edge;
+    found.along = {place_on(found.edge, expected.point_at(piece, match.from_px)),
+                   place_on(found.edge, expected.point_at(piece, match.to_px))};
     found.normal = line.normal().cast<double>();
     found.offset_px = found.normal.dot(line.middle.cast<double>());
     const double rival = match.rival_px < localization::Match::kNoRival ? kRivalShare * double{match.rival_px} : 0.0;
@@ -85,11 +72,8 @@ class Observer {
 
   const ElasticMap* map_;
   const RefineParameters* parameters_;
-  geometry::Camera camera_;
-  render::DepthRaster raster_;
-  localization::ExpectedView view_;
+  MapView shown_;
   localization::Matcher matcher_;
-  std::vector<render::VisiblePiece> visible_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "pipeline/localization/expected.h"
-#include "pipeline/render/depth_raster.h"
+#include "pipeline/mapping/map_view.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -46,18 +46,9 @@ class PartSearch {
       : views_(views), camera_(camera), sigma_m_(parameters.map_sigma_m), sharpness_px_(sharpness_px) {
     stretches_.resize(map.parts().size());
     for (const Part& part : map.parts()) moved_.push_back(mean_move(map, part));
-    render::RasterParameters raster_parameters;
-    raster_parameters.max_pieces = parameters.max_pieces;
-    raster_parameters.max_edges = raster_parameters.max_surfaces = 20'000;
-    raster_parameters.max_triangles = raster_parameters.max_visited = 100'000;
-    render::DepthRaster raster(map.map(), raster_parameters);
-    localization::ExpectedView expected(map.map(), static_cast<std::size_t>(parameters.max_pieces));
-    std::vector<render::VisiblePiece> visible;
-    visible.reserve(static_cast<std::size_t>(parameters.max_pieces));
+    MapView shown(map, camera, parameters);
     for (std::uint32_t i = 0; i < views.size(); ++i) {
-      raster.look(views[i].X_WC, camera, visible);
-      expected.take(visible, views[i].X_WC);
-      expected.project(views[i].X_WC, camera);
+      const localization::ExpectedView& expected = shown.look(views[i].X_WC);
       for (const localization::ProjectedPiece& piece : expected.projected()) {
         const std::uint32_t edge = expected.pieces()[piece.piece].edge;
         stretches_[map.part_of(map.ends_of(edge)[0])].push_back({i, expected.point_at(piece, -piece.half_length),

@@ -1,6 +1,5 @@
 #include "tools/map/proposal_file.h"
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -9,24 +8,16 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/mapping/obj_words.h"
+
 namespace cgsr::app {
 namespace {
 
 constexpr std::uintmax_t kLargest_bytes = 16U << 20U;
 constexpr std::string_view kName = "proposal_";
 
-std::vector<std::string> words_of(std::string_view line) {
-  std::istringstream stream{std::string(line)};
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-template <class Number>
-bool read_number(std::string_view text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && !text.empty();
-}
+using mapping::read_number;
+using mapping::words_of;
 
 class Reader {
  public:
@@ -52,10 +43,10 @@ class Reader {
     return fail(fmt::format("{}:{}: {}", name_, line_, message));
   }
 
-  Result<void> take_name(const std::vector<std::string>& words) {
+  Result<void> take_name(const std::vector<std::string_view>& words) {
     if (number_ != 0) return wrong(fmt::format("proposal {} has no line `l A B`", number_));
-    const std::string word = words.size() > 1 ? words[1] : "";
-    const std::string_view rest = word.starts_with(kName) ? std::string_view(word).substr(kName.size()) : "";
+    const std::string_view word = words.size() > 1 ? words[1] : "";
+    const std::string_view rest = word.starts_with(kName) ? word.substr(kName.size()) : "";
     int number = 0;
     if (!read_number(rest.substr(0, rest.find('_')), number) || number < 1) {
       return wrong(fmt::format("an object is '{}': expected a name as {}1_seen_in_9_images", word, kName));
@@ -65,7 +56,7 @@ class Reader {
     return {};
   }
 
-  Result<void> take_point(const std::vector<std::string>& words) {
+  Result<void> take_point(const std::vector<std::string_view>& words) {
     Eigen::Vector3d p;
     bool read = words.size() == 4;
     for (std::size_t i = 0; read && i < 3; ++i) {
@@ -77,7 +68,7 @@ class Reader {
     return {};
   }
 
-  Result<void> take_line(const std::vector<std::string>& words) {
+  Result<void> take_line(const std::vector<std::string_view>& words) {
     std::size_t a = 0;
     std::size_t b = 0;
     const bool read = words.size() == 3 && read_number(words[1], a) && read_number(words[2], b);

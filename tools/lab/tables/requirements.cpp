@@ -137,9 +137,8 @@ constexpr std::array kRequirements{
     NamedRequirement{"table-4.2", "1000000 edges, others behind, ours", "mean", at_most(20.0)},
     NamedRequirement{
         "map-refine", "each part off", "corners after", at_most(1.5),
-        "with every match right, 2.5 cm were left in four homes: 1.3 cm once a shift common to a home, which no "
-        "image shows, is taken out. Besides, parts among lines that repeat (racks, sills, skirtings, walls of "
-        "which one edge is seen) settle on a wrong line"},
+        "no image shows where the home is as a whole (a column takes that out); and parts among lines that repeat "
+        "(racks, sills, skirtings, walls of which one edge is seen) settle on a wrong line"},
     NamedRequirement{
         "map-refine", "each part off", "moved chair proposed", at_least(1.0),
         "a moved piece is looked for on a grid with nothing before it and counts where six images or more show "
