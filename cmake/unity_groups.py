@@ -3,7 +3,7 @@
 
 usage: unity_groups.py LIST FOLDER
 
-LIST holds a line "target|file" per source file. Writes FOLDER/TARGET_N.cpp for every group of at least two files, and prints a line
+LIST holds a line "target|folder of the target|file" per source file. Writes FOLDER/TARGET_N.cpp for every group of at least two files, and prints a line
 "target|group file|file|file..." for each. A group's file includes the headers of all its files first, so that the headers are read as they are. A
 name of an anonymous namespace that another file of the group, or a header, has as well is another one while its file is read: by a macro.
 Names that count are declared at the start of a line, as clang-format leaves them.
@@ -163,10 +163,11 @@ def write(path, text):
 
 def main():
     targets = defaultdict(list)
-    pairs = [line.split("|") for line in pathlib.Path(sys.argv[1]).read_text().splitlines()]
-    uses = Counter(file for _, file in pairs)
-    for target, file in pairs:
-        if uses[file] == 1:  # a file of two targets is compiled for each
+    lines = [line.split("|") for line in pathlib.Path(sys.argv[1]).read_text().splitlines()]
+    uses = Counter((folder, file) for _, folder, file in lines)
+    for target, folder, file in lines:
+        # That a file is compiled as part of a group is known of a folder, not of a target: one of two targets there is compiled for each.
+        if uses[folder, file] == 1:
             targets[target].append(file)
     folder = pathlib.Path(sys.argv[2])
     folder.mkdir(exist_ok=True)

@@ -15,12 +15,15 @@ class UnityGroups(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.folder = Path(scratch.name)
 
-    def groups(self, **files):
+    def groups(self, targets=("room",), **files):
         """Writes the files, has them grouped, and returns a list of their names for each group."""
         for name, text in files.items():
             (self.folder / f"{name}.cpp").write_text(text)
         listed = self.folder / "list.txt"
-        listed.write_text("".join(f"room|{self.folder}/{name}.cpp\n" for name in files))
+        listed.write_text("".join(f"{target}|/{target}s_folder|{self.folder}/{name}.cpp\n" for target in targets for name in files))
+        return self.grouped(listed)
+
+    def grouped(self, listed):
         out = subprocess.run([sys.executable, ROOT / "cmake/unity_groups.py", listed, self.folder / "unity"],
                              check=True, capture_output=True, text=True).stdout
         return [[Path(file).stem for file in line.split("|")[2:]] for line in out.splitlines()]
@@ -45,6 +48,16 @@ class UnityGroups(unittest.TestCase):
     def test_what_speaks_to_headers_stays_apart(self):
         for line in ("#define SIZE 3\n", 'extern "C" {\n#include <math.h>\n}\n', "#ifdef SIZE\n#endif\n"):
             self.assertEqual(self.groups(a=line, b="int b();\n", c="int c();\n"), [["b", "c"]], line)
+
+    def test_targets_of_two_folders_group_the_same_files_each(self):
+        self.assertEqual(self.groups(targets=("room", "guide"), a="int a();\n", b="int b();\n"), [["a", "b"], ["a", "b"]])
+
+    def test_a_file_of_two_targets_of_a_folder_stays_apart(self):
+        for name in "abc":
+            (self.folder / f"{name}.cpp").write_text(f"int {name}();\n")
+        listed = self.folder / "list.txt"
+        listed.write_text("".join(f"{target}|/folder|{self.folder}/{name}.cpp\n" for target, name in ("xa", "xb", "xc", "yc")))
+        self.assertEqual(self.grouped(listed), [["a", "b"]])
 
 
 if __name__ == "__main__":
