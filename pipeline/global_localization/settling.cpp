@@ -41,6 +41,7 @@ void Settling::begin(const Candidate& candidate) {
   images_ = 0;
   standing_images_ = 0;
   begun_rad_ = std::nullopt;
+  turned_before_rad_ = 0.0;
 }
 
 std::optional<std::size_t> Settling::nearest_view(const Turn& turn, double within_rad) const {

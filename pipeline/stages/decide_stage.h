@@ -8,8 +8,8 @@
 
 namespace cgsr::stages {
 
-/// What the robot does about an image: asks its task, and passes on what stages require of the lamps. While the robot seeks its first pose it turns as that
-/// search asks, and its task waits.
+/// What the robot does about an image: asks its task, and passes on what stages require of the lamps. While the robot searches the whole map for its pose
+/// it turns as that search asks, and its task waits.
 /// Ours; the tasks are those of the dissertation (3.3.2 and Alg. 5.2) and routes.
 ///
 /// Threads: one. Nothing here allocates.

@@ -10,6 +10,14 @@ namespace cgsr::stages {
 
 using global_localization::Phase;
 
+namespace {
+
+bool is_without_answer(Phase phase) {
+  return phase == Phase::kAmbiguous || phase == Phase::kNotFound;
+}
+
+}  // namespace
+
 LocalizeStage::LocalizeStage(LocalizationSetup setup)
     : map_(std::move(setup.map)),
       X_CR_(setup.X_RC.inverse()),
@@ -19,21 +27,18 @@ LocalizeStage::LocalizeStage(LocalizationSetup setup)
       localizer_(*map_, setup.camera, setup.localizer, std::move(setup.expectation)),
       tracker_(localizer_, setup.X_RC, setup.tracking),
       self_mask_(std::move(setup.self_mask)),
-      first_turn_radps_(setup.first_turn_radps) {
-  if (setup.start_places_m.empty()) {
-    tracker_.start(setup.start);
-  } else {
-    first_pose_ = std::make_unique<global_localization::GlobalLocalizer>(
-        *map_, camera_, setup.X_RC, std::move(setup.start_places_m), localizer_, setup.tracking,
+      seek_turn_radps_(setup.seek_turn_radps),
+      seek_again_after_(setup.seek_again_after) {
+  if (!setup.places_m.empty()) {
+    whole_map_ = std::make_unique<global_localization::GlobalLocalizer>(
+        *map_, camera_, setup.X_RC, std::move(setup.places_m), localizer_, setup.tracking,
         global_localization::GlobalLocalizerParameters{});
   }
+  seeks_ = whole_map_ != nullptr && setup.seeks_first_pose;
+  if (!seeks_) tracker_.start(setup.start);
 }
 
 LocalizeStage::~LocalizeStage() = default;
-
-bool LocalizeStage::seeks_first_pose() const {
-  return first_pose_ != nullptr && first_pose_->phase() != Phase::kFound;
-}
 
 bool LocalizeStage::takes(const ImageView& image) const {
   return (image.width_px == camera_.width_px && image.height_px == camera_.height_px) ||
@@ -43,7 +48,7 @@ bool LocalizeStage::takes(const ImageView& image) const {
 void LocalizeStage::carry_on(const hal::Odometry& odometry) {
   const geometry::Pose X_OR = pose_of(odometry, axle_height_m_);
   // While it is sought the localizer looks at images of before, which this motion does not move.
-  if (X_OR_ && !seeks_first_pose()) carry(X_OR_->inverse() * X_OR);
+  if (X_OR_ && !seeks_) carry(X_OR_->inverse() * X_OR);
   X_OR_ = X_OR;
   pitch_rad_ = odometry.pitch_rad;
   lean(odometry.pitch_rad, axle_height_m_);
@@ -54,34 +59,77 @@ PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image, c
   const View* const now = view.within(Duration::zero());
   if (now == nullptr || !now->reduced) {
     PoseEstimate unseen;
-    if (first_pose_ != nullptr) unseen.first_pose = first_pose_->phase();
+    if (seeks_) tell_search(unseen);
+    unseen.turn_radps = 0.0;
     return unseen;
   }
   if (odometry) carry_on(*odometry);
   const ImageView grey = now->grey();
   const ImageView& seen = takes(grey) ? grey : image;
-  return seeks_first_pose() ? seek_first_pose(budget, seen) : update(budget, seen);
+  if (seeks_) return seek_pose(budget, seen);
+  PoseEstimate pose = update(budget, seen);
+  if (whole_map_ == nullptr || !odometry) return pose;
+  time_lost_.add(pose.camera, odometry->stamp);
+  if (seek_again_after_ > Duration::zero() && time_lost_.lasted() >= seek_again_after_) seek_anew(pose);
+  return pose;
 }
 
-PoseEstimate LocalizeStage::seek_first_pose(WorkBudget& budget, const ImageView& image) {
+void LocalizeStage::tell_search(PoseEstimate& pose) const {
+  pose.search = whole_map_->phase();
+  pose.anew = anew_;
+  pose.turn_radps = X_OR_ && whole_map_->wants_turn() ? seek_turn_radps_ : 0.0;
+}
+
+PoseEstimate LocalizeStage::seek_pose(WorkBudget& budget, const ImageView& image) {
   PoseEstimate pose;
   pose.has_map = true;
+  pose.anew = anew_;
   pose.camera.correction.reason = localization::Reason::kSearching;
-  const Phase before = first_pose_->phase();
-  const bool given_up = before == Phase::kAmbiguous || before == Phase::kNotFound;
-  if (X_OR_ && !given_up) first_pose_->update(image, {*X_OR_, pitch_rad_, axle_height_m_}, budget, mask());
-  const Phase phase = first_pose_->phase();
-  if (phase != before) pose.events.add({"first pose", to_string(phase), {}});
+  const Phase before = whole_map_->phase();
+  if (X_OR_ && !is_without_answer(before))
+    whole_map_->update(image, {*X_OR_, pitch_rad_, axle_height_m_}, budget, mask());
+  const Phase phase = whole_map_->phase();
+  if (phase != before) pose.events.add({pose.sought(), to_string(phase), {}});
   if (phase == Phase::kFound) {
-    pose.camera = first_pose_->found();
+    seeks_ = false;
+    pose.camera = whole_map_->found();
     tracker_.start({pose.camera.X_WC, pose.camera.correction.covariance});
     tell(pose);
-  } else if ((phase == Phase::kAmbiguous || phase == Phase::kNotFound) && !given_up && ++first_turns_ < kFirstTurns) {
-    first_pose_->restart();
+  } else if (is_without_answer(phase) && phase != before) {
+    turn_led_nowhere(pose);
   }
-  pose.first_pose = first_pose_->phase();
-  pose.turn_radps = X_OR_ && first_pose_->wants_turn() ? first_turn_radps_ : 0.0;
+  if (seeks_) tell_search(pose);
   return pose;
+}
+
+void LocalizeStage::turn_led_nowhere(PoseEstimate& pose) {
+  if (++turns_ < kMaxTurns) {
+    whole_map_->restart();
+  } else if (anew_) {
+    go_on_lost(pose);
+  }
+}
+
+void LocalizeStage::seek_anew(PoseEstimate& pose) {
+  whole_map_->restart();
+  X_OR_lost_ = *X_OR_;
+  turns_ = 0;
+  time_lost_ = {};
+  seeks_ = anew_ = true;
+  tell_search(pose);
+  pose.events.add({pose.sought(), to_string(pose.search), "lost for long"});
+}
+
+// The turns on the spot end about where they began, but the odometry knows their sum worse than the one step that is made of it says.
+void LocalizeStage::go_on_lost(PoseEstimate& pose) {
+  seeks_ = false;
+  localizer_.restart();
+  carry(X_OR_lost_.inverse() * *X_OR_);
+  time_lost_.give_up();
+  pose.camera = tracker_.now();
+  pose.camera.correction = {.reason = localization::Reason::kSearching};
+  pose.events.add({"pose", to_string(pose.camera.state), "goes on from where it was lost"});
+  tell(pose);
 }
 
 PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image) {

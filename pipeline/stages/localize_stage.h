@@ -16,6 +16,7 @@
 #include "pipeline/runtime/aged.h"
 #include "pipeline/stages/decode_stage.h"
 #include "pipeline/stages/events.h"
+#include "pipeline/stages/time_lost.h"
 #include "pipeline/world/map.h"
 #include "platform/description.h"
 
@@ -30,24 +31,25 @@ struct PoseEstimate {
   bool has_map = false;              ///< else nothing below means anything.
   localization::TrackedPose camera;  ///< X_WC, its covariance, and what this image did to it.
   behavior::PlanarPose robot;        ///< X_WR on its floor.
-  /// How far the search for the first pose has come; where the robot was told it, kFound from the beginning.
-  global_localization::Phase first_pose = global_localization::Phase::kFound;
+  /// How far the search of the whole map for the pose has come; kFound while none is under way, be the pose lost or not.
+  global_localization::Phase search = global_localization::Phase::kFound;
+  bool anew = false;        ///< with a search: for a pose that was lost for long; otherwise for the first one.
   double turn_radps = 0.0;  ///< that this search asks for, on the spot, positive to the left.
   Events events{};          ///< changes of the state.
 
   [[nodiscard]] bool known() const { return has_map && robot.known; }
-  /// Nobody told the robot where it is, and it does not know yet: it should do as `turn_radps` says and nothing else.
-  [[nodiscard]] bool seeks_first_pose() const { return first_pose != global_localization::Phase::kFound; }
+  /// The whole map is searched for the pose: the robot should do as `turn_radps` says and nothing else.
+  [[nodiscard]] bool seeks_pose() const { return search != global_localization::Phase::kFound; }
+  /// \return what is sought, as events and people call it.
+  [[nodiscard]] std::string_view sought() const { return anew ? "new pose" : "first pose"; }
 
-  /// \return the word of the search for the first pose, and once that is found of the pose that is carried on.
-  [[nodiscard]] std::string_view state() const {
-    return seeks_first_pose() ? to_string(first_pose) : to_string(camera.state);
-  }
+  /// \return the word of the search of the whole map, and without one of the pose that is carried on.
+  [[nodiscard]] std::string_view state() const { return seeks_pose() ? to_string(search) : to_string(camera.state); }
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
     const bool map = self.has_map;
-    const bool somewhere = map && !self.seeks_first_pose();
+    const bool somewhere = map && !self.seeks_pose();
     visit.text("pose", when(map, self.state()), "state of the pose estimate");
     visit.flag("corrected", when(map, self.camera.correction.corrected), "this image corrected the pose");
     visit.text("reason", when(map, to_string(self.camera.correction.reason)), "why it did not");
@@ -70,15 +72,19 @@ struct LocalizationSetup {
   localization::LocalizerParameters localizer;
   localization::PoseTrackerParameters tracking;
   localization::Prior start;  ///< of the camera.
-  /// Where the robot may have been put down (grid_of_places), for one that nobody tells where; empty: it begins at `start`.
-  std::vector<Eigen::Vector2d> start_places_m;
-  double first_turn_radps = 0.6;  ///< on the spot, while it seeks its first pose; at most 45 degrees a second.
+  /// Where the robot may be (grid_of_places), for one that searches the whole map for its pose; empty: it begins at `start` and never does.
+  std::vector<Eigen::Vector2d> places_m;
+  /// It does so at first, for nobody tells it where it is; otherwise it begins at `start`.
+  bool seeks_first_pose = false;
+  double seek_turn_radps = 0.6;               ///< on the spot, while it does so; at most 45 degrees a second.
+  Duration seek_again_after = seconds(10.0);  ///< TimeLost, after which it does so again; zero: never.
   std::vector<std::uint8_t>
       self_mask;  ///< of the localizer's working size, not 0 where the robot sees itself; empty: nowhere.
 };
 
 /// Chapter 4, the localization correction of Fig. 5.1: odometry carries the pose from exposure to exposure, images correct it. A robot that may be
-/// anywhere in its map first seeks its pose while it turns on the spot; after kFirstTurns turns without an answer it gives up and stands.
+/// anywhere in its map first seeks its pose while it turns on the spot, and again when it is lost for long. After kMaxTurns turns without an answer it gives
+/// up: without a pose it stands; with a lost one it goes on from there, as lost as before, and seeks no more until an image has corrected its pose.
 ///
 /// Threads: one. After construction nothing here allocates.
 class LocalizeStage {
@@ -88,7 +94,7 @@ class LocalizeStage {
   static constexpr std::string_view kMeaning = "The robot's pose, corrected against the map (chapter 4).";
   static constexpr runtime::StageParameters kRow{1, 0, 9000, 8, runtime::OnOverrun::kSkip};
 
-  static constexpr int kFirstTurns = 3;
+  static constexpr int kMaxTurns = 3;
 
   explicit LocalizeStage(LocalizationSetup setup);
   ~LocalizeStage();
@@ -116,8 +122,12 @@ class LocalizeStage {
 
  private:
   [[nodiscard]] bool takes(const ImageView& image) const;
-  [[nodiscard]] bool seeks_first_pose() const;
-  PoseEstimate seek_first_pose(WorkBudget& budget, const ImageView& image);
+  /// Of the search for the pose, as PoseEstimate has it.
+  void tell_search(PoseEstimate& pose) const;
+  PoseEstimate seek_pose(WorkBudget& budget, const ImageView& image);
+  void turn_led_nowhere(PoseEstimate& pose);
+  void seek_anew(PoseEstimate& pose);
+  void go_on_lost(PoseEstimate& pose);
   /// What the camera's pose says of the robot, and whether that is news.
   void tell(PoseEstimate& pose);
   void carry_on(const hal::Odometry& odometry);
@@ -131,9 +141,14 @@ class LocalizeStage {
   localization::Localizer localizer_;
   localization::PoseTracker tracker_;
   std::vector<std::uint8_t> self_mask_;
-  std::unique_ptr<global_localization::GlobalLocalizer> first_pose_;  // null: the robot was told where it begins
-  double first_turn_radps_;
-  int first_turns_ = 0;                                                 // that led to no pose
+  std::unique_ptr<global_localization::GlobalLocalizer> whole_map_;  // null: it is never searched
+  double seek_turn_radps_;
+  Duration seek_again_after_;
+  bool seeks_ = false;  // it is searched now
+  bool anew_ = false;
+  int turns_ = 0;  // of this search, that led to no pose
+  TimeLost time_lost_;
+  geometry::Pose X_OR_lost_ = geometry::Pose::Identity();               // where it began to seek anew
   std::optional<geometry::Pose> X_OR_;                                  // at the last image
   double pitch_rad_ = 0.0;                                              // likewise
   localization::TrackState state_ = localization::TrackState::kUnsure;  // likewise

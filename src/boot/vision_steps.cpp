@@ -160,6 +160,34 @@ Result<std::unique_ptr<stages::Task>> task_of(RobotState& state) {
   return std::make_unique<stages::RouteTask>(behavior::Route(config.task.route, std::move(*places), config.motion));
 }
 
+/// The search of the whole map for the pose, for a robot that nobody tells where it begins, or that may be lost for long.
+Result<void> prepare_search(RobotState& state, bool first_pose, stages::LocalizationSetup& setup) {
+  const config::RobotLocalization& known = state.setup.config.localization;
+  if (!known.start.anywhere || (!first_pose && known.start.again_after_s <= 0.0)) return {};
+  const int units = state.setup.config.stage.of<stages::LocalizeStage>().units;
+  if (units < localization::kMinSearchUnits) {
+    return fail(fmt::format("stage.localize.units = {}: localization.start.anywhere needs at least {}", units,
+                            localization::kMinSearchUnits));
+  }
+  if (!known.tracker.floor) {
+    return fail("localization.tracker.floor = false: localization.start.anywhere needs a robot on a level floor");
+  }
+  if (first_pose && state.setup.config.motion.keep_in.enabled) {
+    state.report.notes.emplace_back(
+        "motion.keep_in is seen from where the robot stands now, wherever in the map that is");
+  }
+  auto places = app::start_places(*state.vision.map, known.map);
+  if (!places) return tl::unexpected(places.error());
+  setup.places_m = std::move(*places);
+  setup.seeks_first_pose = first_pose;
+  setup.seek_turn_radps = known.start.turn_radps;
+  setup.seek_again_after = seconds(known.start.again_after_s);
+  state.report.notes.push_back(fmt::format("seeks its {} among {} places",
+                                           first_pose ? "first pose" : "pose, once it is lost for long,",
+                                           setup.places_m.size()));
+  return {};
+}
+
 }  // namespace
 
 /// The object's model, where the task needs one and its file is named.
@@ -256,25 +284,7 @@ Result<void> make_localization(RobotState& state) {
   setup.localizer = known.localizer;
   setup.tracking = known.tracker;
   setup.start = boot->prior;
-  if (boot->anywhere) {
-    const int units = state.setup.config.stage.of<stages::LocalizeStage>().units;
-    if (units < localization::kMinSearchUnits) {
-      return fail(fmt::format("stage.localize.units = {}: localization.start.anywhere needs at least {}", units,
-                              localization::kMinSearchUnits));
-    }
-    if (!known.tracker.floor) {
-      return fail("localization.tracker.floor = false: localization.start.anywhere needs a robot on a level floor");
-    }
-    if (state.setup.config.motion.keep_in.enabled) {
-      state.report.notes.emplace_back(
-          "motion.keep_in is seen from where the robot stands now, wherever in the map that is");
-    }
-    auto places = app::start_places(*state.vision.map, known.map);
-    if (!places) return tl::unexpected(places.error());
-    setup.start_places_m = std::move(*places);
-    setup.first_turn_radps = known.start.turn_radps;
-    state.report.notes.push_back(fmt::format("seeks its first pose among {} places", setup.start_places_m.size()));
-  }
+  if (auto prepared = prepare_search(state, boot->anywhere, setup); !prepared) return prepared;
   if (calibration.board) {
     setup.self_mask = stages::self_mask(*calibration.board, localization::working_camera(*calibration.camera),
                                         calibration.X_RC, kSelfMaskMargin_px);

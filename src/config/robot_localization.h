@@ -29,6 +29,7 @@ struct StartPose {
   calibration::Marker marker;
   bool anywhere = false;
   double turn_radps = 0.6;
+  double again_after_s = 10.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -48,6 +49,10 @@ struct StartPose {
         "When neither such a file nor the marker says where the robot is, it turns on the spot and searches the "
         "whole map for its pose, instead of beginning at the pose above; its task waits until the pose is found.");
     visit.number("turn_radps", self.turn_radps, {0.1, 0.78}, "rad/s", "The turn rate during this search.");
+    visit.number(
+        "again_after_s", self.again_after_s, {0.0, 3600.0}, "s",
+        "With anywhere: when the pose stays lost for so long, the robot searches the whole map again. Only the time of "
+        "images that could have corrected the pose counts; 0 means never.");
   }
 };
 

@@ -9,7 +9,7 @@ const cv::Mat& PlanPicture::draw(const ImageReport& report) {
   facts.commanded = report.motion.commanded;
   facts.set_distance_m = set_distance_m_;
   const stages::PoseEstimate& pose = report.frame.pose.value;
-  if (pose.has_map && !pose.seeks_first_pose())
+  if (pose.has_map && !pose.seeks_pose())
     facts.believed = hal::FloorPose{pose.robot.x_m, pose.robot.y_m, pose.robot.heading_rad};
   return view_.draw(facts);
 }

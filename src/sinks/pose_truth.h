@@ -8,7 +8,8 @@
 
 namespace cgsr::sinks {
 
-/// How well a simulated robot knew where it was, by what was really there. Counts begin with the first correction.
+/// How well a simulated robot knew where it was, by what was really there. Counts begin with the first correction; images in which it searched the whole
+/// map for its pose are left out.
 struct PoseTruthStatistics {
   std::uint64_t images = 0;
   std::uint64_t corrected = 0;  ///< in which the image corrected the pose.
@@ -35,7 +36,7 @@ struct PoseError {
 class PoseTruth {
  public:
   /// \param odometry  the base's own, at about the image.
-  /// \return this image's error; nothing before the first correction and without a map.
+  /// \return this image's error; nothing before the first correction, without a map, and while the whole map is searched for the pose.
   std::optional<PoseError> add(const hal::ImageTruth& truth, const stages::PoseEstimate& pose,
                                const hal::Odometry& odometry);
 

@@ -19,7 +19,7 @@ std::string task_line(const ImageReport& report) {
 }
 
 std::string pose_line(const stages::PoseEstimate& pose) {
-  if (pose.seeks_first_pose()) return fmt::format("first pose: {}", pose.state());
+  if (pose.seeks_pose()) return fmt::format("{}: {}", pose.sought(), pose.state());
   return fmt::format("pose {}   x {:.2f} y {:.2f} m  heading {:.1f} deg   {} matches", pose.state(), pose.robot.x_m,
                      pose.robot.y_m, pose.robot.heading_rad * 180.0 / std::numbers::pi, pose.camera.correction.matches);
 }

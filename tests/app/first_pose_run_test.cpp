@@ -54,12 +54,37 @@ TEST_F(RunAnywhere, FindsItsFirstPoseByTurningAndDrivesOn) {
   EXPECT_GT(summary["outputs"]["decision"]["images"]["state"]["on its way"], 30) << "its task waits for ever";
 }
 
+// Somebody carried it elsewhere while it was off.
+TEST_F(RunAnywhere, LostForLongByTheLastRunsPoseItFindsItselfAndDrivesOn) {
+  write_text(scratch_ / "last.csv", "tx,ty,tz,qw,qx,qy,qz\n1.2,3.2,0,1,0,0,0\n");
+  const auto outcome = run_cgsr(
+      {"run", "--config",
+       robot({{"localization.start.file", quoted(scratch_ / "last.csv")}, {"localization.start.again_after_s", "1"}}),
+       "--duration", "16", "--seed", "3", "--json", scratch_ / "run.json"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output + outcome.errors, HasSubstr("seeks its pose, once it is lost for long, among"));
+  const auto summary = nlohmann::json::parse(read_text(scratch_ / "run.json"));
+  std::vector<std::string> phases;
+  for (const auto& event : summary["events"]) {
+    EXPECT_NE(event["source"], "first pose");
+    if (event["source"] == "new pose") phases.push_back(event["state"]);
+  }
+  EXPECT_EQ(phases, (std::vector<std::string>{"turning", "comparing", "trying", "settling", "found"}));
+  EXPECT_GT(summary["pose"]["images"], 30) << "the rest of the run says nothing";
+  EXPECT_LE(summary["pose"]["worst_cm"], 5.0);
+  EXPECT_LE(summary["pose"]["worst_deg"], 1.5);
+  EXPECT_GT(summary["outputs"]["decision"]["images"]["state"]["on its way"], 30) << "its task waits for ever";
+}
+
 TEST_F(RunAnywhere, RefusesAFileWithWhichItCannotBe) {
   const auto without_map = run_cgsr({"run", "--config", robot({{"localization.map", "\"\""}}), "--duration", "1"});
   EXPECT_NE(without_map.exit_code, 0);
   const auto few = run_cgsr({"run", "--config", robot({{"stage.localize.units", "5"}}), "--duration", "1"});
   EXPECT_NE(few.exit_code, 0);
   EXPECT_THAT(few.errors, HasSubstr("stage.localize.units = 5: localization.start.anywhere needs at least 6"));
+  const auto negative = run_cgsr({"run", "--config", robot({{"localization.start.again_after_s", "-1"}})});
+  EXPECT_NE(negative.exit_code, 0);
+  EXPECT_THAT(negative.errors, HasSubstr("localization.start.again_after_s = -1 is not in 0..3600 s"));
 }
 
 }  // namespace

@@ -47,6 +47,27 @@ TEST(PoseTruth, MeasuresFromTheFirstCorrectionOn) {
   EXPECT_NEAR(tally.statistics().odometry_worst_m, 0.1, 1e-12);
 }
 
+// A robot that searches the whole map says nowhere that it is anywhere.
+TEST(PoseTruth, LeavesOutASearchOfTheWholeMap) {
+  PoseTruth tally;
+  const hal::ImageTruth truth;
+  const hal::Odometry odometry;
+  ASSERT_TRUE(tally.add(truth, corrected_at(geometry::Pose::Identity()), odometry));
+  stages::PoseEstimate lost = corrected_at(geometry::Pose::Identity());
+  lost.camera.correction.corrected = false;
+  lost.camera.state = localization::TrackState::kLost;
+  EXPECT_TRUE(tally.add(truth, lost, odometry));
+  stages::PoseEstimate seeks;
+  seeks.has_map = true;
+  seeks.search = global_localization::Phase::kTurning;
+  seeks.camera.X_WC = geometry::pose_on_floor(9.0, 0.0, 0.0);
+  EXPECT_FALSE(tally.add(truth, seeks, odometry));
+  EXPECT_TRUE(tally.add(truth, lost, odometry));
+  EXPECT_EQ(tally.statistics().images, 3U);
+  EXPECT_EQ(tally.statistics().lost, 1U);
+  EXPECT_EQ(tally.statistics().worst_m, 0.0);
+}
+
 hal::Odometry report(double time_s, double x_m, double heading_rad) {
   hal::Odometry odometry;
   odometry.stamp = MonoTime{seconds(time_s)};
