@@ -47,7 +47,7 @@ struct GateParameters {
   double error_per_px = 6.8;
   double error_per_ln_match = -2.15;
   double error_per_cost = 0.127;
-  double max_error_log_odds = -2.75;
+  double max_error_log_odds = -2.5;
   double same_m = 0.05;
   double same_deg = 1.5;
   int min_expected = 3;
@@ -172,6 +172,7 @@ struct LocalizerParameters {
   int finalists = 8;
   int neighbours = 40;
   int walks = 4;
+  double cost_weight = 0.006;
   int min_matches = 3;
   double min_tracking_matched_ratio = 0.3;
   double min_evidence = 0.48;
@@ -252,6 +253,9 @@ struct LocalizerParameters {
                  "The number of poses around the best one that are compared with it.");
     visit.number("walks", self.walks, {0, 20}, "",
                  "The number of times that this comparison starts again from a better neighbour.");
+    visit.number("cost_weight", self.cost_weight, {0.0, 1.0}, "",
+                 "The agreement that each unit of the solver's cost takes from a pose when the poses of a search are "
+                 "compared.");
   }
 
   template <class Self, class Visitor>

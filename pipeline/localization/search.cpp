@@ -25,6 +25,7 @@ constexpr double kAlternative_px = 8.0;  // nearer than this the second-best pos
 constexpr std::size_t kKept = 12;
 constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
 constexpr int kNeighbourRounds = 4;
+constexpr float kUnsolved = -1e6F;    // below the rank of any pose
 constexpr float kStartPrior = 0.01F;  // of a start's squared sigmas from the prior, off its score
 
 // Acklam's rational approximation of the normal distribution's quantile; relative error below 1.2e-9.
@@ -63,6 +64,11 @@ double even_normal(std::uint32_t index, int dimension) {
   return normal_quantile(value);
 }
 
+float search_rank(const Estimate& estimate, double cost_weight) {
+  if (!estimate.solved) return kUnsolved;
+  return estimate.agreement - static_cast<float>(cost_weight * estimate.solution.cost);
+}
+
 PriorShape PriorShape::of(const Matrix6d& covariance, const Matrix6d& motion_metric) {
   const Matrix6d root = covariance.llt().matrixL();
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(root.transpose() * motion_metric * root);
@@ -82,10 +88,6 @@ Search::Search(const LocalizerParameters& parameters, Alternation& alternation, 
       field_(camera.width_px, camera.height_px) {
   finalists_.reserve(static_cast<std::size_t>(parameters.finalists) + 1);
   estimates_.reserve(kKept + 1);
-}
-
-float Search::rank_of(const Estimate& estimate) {
-  return estimate.solved ? estimate.agreement - 0.01F * estimate.prior_chi2 : -10.0F;
 }
 
 double Search::motion_between(const Pose& a, const Pose& b) const {
@@ -168,7 +170,7 @@ void Search::keep(const Estimate& estimate) {
     break;
   }
   const auto place = std::upper_bound(estimates_.begin(), estimates_.end(), estimate,
-                                      [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
+                                      [this](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
   estimates_.insert(place, estimate);
   if (estimates_.size() > kKept) estimates_.pop_back();
 }
@@ -250,7 +252,7 @@ void Search::verdict() {
   const std::size_t count = next_judged_;
   if (count == 0) return;
   std::sort(judged_.begin(), judged_.begin() + static_cast<std::ptrdiff_t>(count),
-            [](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
+            [this](const Estimate& a, const Estimate& b) { return rank_of(a) > rank_of(b); });
   best_ = judged_[0];
   for (std::size_t i = 1; i < count; ++i) {
     if (motion_between(best_.solution.X_WC, judged_[i].solution.X_WC) <= kAlternative_px ||

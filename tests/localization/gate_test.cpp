@@ -113,8 +113,8 @@ TEST(Gate, NamesWhatIsMissing) {
   EXPECT_EQ(judged(estimate), Reason::kUncertain);
   estimate = good();
   estimate.matches = 8;
-  estimate.solution.information = geometry::Matrix6d::Identity() / (0.06 * 0.06);
-  EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kUncertain) << "exact to 6 cm";
+  estimate.solution.information = geometry::Matrix6d::Identity() / (0.08 * 0.08);
+  EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kUncertain) << "exact to 8 cm";
   estimate.solution.information = geometry::Matrix6d::Identity() / (0.005 * 0.005);
   EXPECT_EQ(judged(estimate, Standing{0.3F}), Reason::kNone);
 }

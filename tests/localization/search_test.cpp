@@ -49,5 +49,23 @@ TEST(SearchProperty, AxesOfAPriorAreItsCovariance) {
   EXPECT_DOUBLE_EQ(shape.widest_px(), shape.motion_px[0]);
 }
 
+// Of two poses that agree with the image alike the one whose matches and prior fit better is the right one more often.
+TEST(Search, ComparesPosesByAgreementAndWhatTheirMatchesLeave) {
+  Estimate pose;
+  pose.solved = true;
+  pose.agreement = 0.5F;
+  pose.solution.cost = 10.0;
+  Estimate other = pose;
+  other.solution.cost = 20.0;
+  EXPECT_GT(search_rank(pose, 0.006), search_rank(other, 0.006));
+  EXPECT_FLOAT_EQ(search_rank(pose, 0.0), search_rank(other, 0.0));
+  other.agreement = 0.55F;
+  EXPECT_LT(search_rank(pose, 0.004), search_rank(other, 0.004)) << "ten units for five hundredths";
+  EXPECT_GT(search_rank(pose, 0.006), search_rank(other, 0.006));
+  other.solution.cost = 1e4;
+  pose.solved = false;
+  EXPECT_LT(search_rank(pose, 1.0), search_rank(other, 1.0));
+}
+
 }  // namespace
 }  // namespace cgsr::localization

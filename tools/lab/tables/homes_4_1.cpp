@@ -28,8 +28,8 @@ constexpr double kNear_cm = 5.0;
 constexpr double kNear_deg = 1.0;
 constexpr double kFalse_cm = 5.0;
 constexpr double kFalse_deg = 1.5;
-constexpr std::array kLogOdds{-1e9, -5.0, -3.5, -2.75, -1.5, 0.0, 1e9};  // bins of the reliability
-constexpr double kNoLimit = 100.0;                                       // of log-odds
+constexpr std::array kLogOdds{-1e9, -5.0, -3.5, -2.5, -1.5, 0.0, 1e9};  // bins of the reliability
+constexpr double kNoLimit = 100.0;                                      // of log-odds
 
 /// One row of figures per contender: a value per home.
 struct ByHome {
