@@ -172,7 +172,7 @@ struct LocalizerParameters {
   int finalists = 8;
   int neighbours = 40;
   int walks = 4;
-  double cost_weight = 0.006;
+  double misfit_weight = 0.2;
   int min_matches = 3;
   double min_tracking_matched_ratio = 0.3;
   double min_evidence = 0.48;
@@ -253,9 +253,10 @@ struct LocalizerParameters {
                  "The number of poses around the best one that are compared with it.");
     visit.number("walks", self.walks, {0, 20}, "",
                  "The number of times that this comparison starts again from a better neighbour.");
-    visit.number("cost_weight", self.cost_weight, {0.0, 1.0}, "",
-                 "The agreement that each unit of the solver's cost takes from a pose when the poses of a search are "
-                 "compared.");
+    visit.number(
+        "misfit_weight", self.misfit_weight, {0.0, 10.0}, "",
+        "The agreement that each unit of the mean cost of a match takes from a pose when the poses of a search "
+        "are compared.");
   }
 
   template <class Self, class Visitor>

@@ -25,8 +25,10 @@ constexpr double kAlternative_px = 8.0;  // nearer than this the second-best pos
 constexpr std::size_t kKept = 12;
 constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
 constexpr int kNeighbourRounds = 4;
-constexpr float kUnsolved = -1e6F;    // below the rank of any pose
-constexpr float kStartPrior = 0.01F;  // of a start's squared sigmas from the prior, off its score
+constexpr float kPriorWeight = 0.01F;  // of a pose's squared sigmas from the prior, off its rank
+constexpr int kFewMatches = 4;         // fewer fit by chance
+constexpr float kUnsolved = -1e6F;     // below the rank of any pose
+constexpr float kStartPrior = 0.01F;   // of a start's squared sigmas from the prior, off its score
 
 // Acklam's rational approximation of the normal distribution's quantile; relative error below 1.2e-9.
 double normal_quantile(double p) {
@@ -64,9 +66,11 @@ double even_normal(std::uint32_t index, int dimension) {
   return normal_quantile(value);
 }
 
-float search_rank(const Estimate& estimate, double cost_weight) {
+float search_rank(const Estimate& estimate, double misfit_weight) {
   if (!estimate.solved) return kUnsolved;
-  return estimate.agreement - static_cast<float>(cost_weight * estimate.solution.cost);
+  const double of_matches = std::max(0.0, estimate.solution.cost - static_cast<double>(estimate.prior_chi2));
+  return estimate.agreement - kPriorWeight * estimate.prior_chi2 -
+         static_cast<float>(misfit_weight * of_matches / std::max(kFewMatches, estimate.matches));
 }
 
 PriorShape PriorShape::of(const Matrix6d& covariance, const Matrix6d& motion_metric) {

@@ -27,9 +27,9 @@ struct PriorShape {
 /// Number `index` of a sequence of standard normal numbers whose tuples over `dimension` (0..5) fill space evenly (Halton 1960).
 double even_normal(std::uint32_t index, int dimension);
 
-/// What the poses of a search are compared by, in units of agreement: how much image and map agree, less what distances of the matches and of the
-/// prior are left (LocalizerParameters::cost_weight). Below that of every other pose for one that could not be solved.
-float search_rank(const Estimate& estimate, double cost_weight);
+/// What the poses of a search are compared by, in units of agreement: how much image and map agree, less the distance to the prior and how badly a
+/// match fits in the mean (LocalizerParameters::misfit_weight). Below that of every other pose for one that could not be solved.
+float search_rank(const Estimate& estimate, double misfit_weight);
 
 /// Finds the pose in a wide prior: starts spread evenly over it, scored without matching; the best of them refined; then poses about the
 /// winner, because two borders of one frame look alike and the right one may not have been tried. Goes on over several images.
@@ -71,7 +71,9 @@ class Search {
   void verdict();
   void keep(const Estimate& estimate);
   [[nodiscard]] double motion_between(const geometry::Pose& a, const geometry::Pose& b) const;
-  [[nodiscard]] float rank_of(const Estimate& estimate) const { return search_rank(estimate, parameters_.cost_weight); }
+  [[nodiscard]] float rank_of(const Estimate& estimate) const {
+    return search_rank(estimate, parameters_.misfit_weight);
+  }
 
   geometry::Pose X_WC_walk_ = geometry::Pose::Identity();
   geometry::Pose X_WC_began_ = geometry::Pose::Identity();

@@ -49,19 +49,29 @@ TEST(SearchProperty, AxesOfAPriorAreItsCovariance) {
   EXPECT_DOUBLE_EQ(shape.widest_px(), shape.motion_px[0]);
 }
 
-// Of two poses that agree with the image alike the one whose matches and prior fit better is the right one more often.
-TEST(Search, ComparesPosesByAgreementAndWhatTheirMatchesLeave) {
+// Of two poses that agree with the image alike the one whose matches fit better, or that is nearer to the prior, is the right one more often.
+TEST(Search, ComparesPosesByAgreementAndHowWellTheirMatchesFit) {
   Estimate pose;
   pose.solved = true;
   pose.agreement = 0.5F;
-  pose.solution.cost = 10.0;
+  pose.matches = 10;
+  pose.prior_chi2 = 2.0F;
+  pose.solution.cost = 12.0;
   Estimate other = pose;
-  other.solution.cost = 20.0;
-  EXPECT_GT(search_rank(pose, 0.006), search_rank(other, 0.006));
+  other.solution.cost = 17.0;
+  EXPECT_GT(search_rank(pose, 0.2), search_rank(other, 0.2));
   EXPECT_FLOAT_EQ(search_rank(pose, 0.0), search_rank(other, 0.0));
-  other.agreement = 0.55F;
-  EXPECT_LT(search_rank(pose, 0.004), search_rank(other, 0.004)) << "ten units for five hundredths";
-  EXPECT_GT(search_rank(pose, 0.006), search_rank(other, 0.006));
+  other.agreement = 0.58F;
+  EXPECT_LT(search_rank(pose, 0.15), search_rank(other, 0.15)) << "half a unit a match for eight hundredths";
+  EXPECT_GT(search_rank(pose, 0.2), search_rank(other, 0.2));
+  other = pose;
+  other.matches = 20;
+  other.solution.cost = 22.0;
+  EXPECT_FLOAT_EQ(search_rank(pose, 0.2), search_rank(other, 0.2)) << "twice as many that fit as well";
+  other = pose;
+  other.prior_chi2 = 6.0F;
+  other.solution.cost = 16.0;
+  EXPECT_NEAR(search_rank(pose, 0.2) - search_rank(other, 0.2), 0.04, 1e-6) << "the prior counts once";
   other.solution.cost = 1e4;
   pose.solved = false;
   EXPECT_LT(search_rank(pose, 1.0), search_rank(other, 1.0));
