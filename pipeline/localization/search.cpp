@@ -25,10 +25,9 @@ constexpr double kAlternative_px = 8.0;  // nearer than this the second-best pos
 constexpr std::size_t kKept = 12;
 constexpr int kFinalistUnits = 4;  // a start that is refined costs about as much as so many that are scored
 constexpr int kNeighbourRounds = 4;
-constexpr float kPriorWeight = 0.01F;  // of a pose's squared sigmas from the prior, off its rank
+constexpr float kPriorWeight = 0.01F;  // of squared sigmas from the prior, off a start's score and a pose's rank
 constexpr int kFewMatches = 4;         // fewer fit by chance
 constexpr float kUnsolved = -1e6F;     // below the rank of any pose
-constexpr float kStartPrior = 0.01F;   // of a start's squared sigmas from the prior, off its score
 
 // Acklam's rational approximation of the normal distribution's quantile; relative error below 1.2e-9.
 double normal_quantile(double p) {
@@ -156,7 +155,7 @@ bool Search::try_starts(const Belief& belief, WorkBudget& budget, int& units) {
     alternation_->project(X_WC_then);
     const Vector6d off = geometry::step_between(belief.prior.X_WC, candidate.X_WC);
     candidate.score = field_.score(alternation_->view().projected()) -
-                      kStartPrior * static_cast<float>(off.dot(belief.information * off));
+                      kPriorWeight * static_cast<float>(off.dot(belief.information * off));
     const auto place = std::upper_bound(finalists_.begin(), finalists_.end(), candidate,
                                         [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     finalists_.insert(place, candidate);

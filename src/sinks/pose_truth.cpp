@@ -20,7 +20,10 @@ std::optional<PoseError> PoseTruth::add(const hal::ImageTruth& truth, const stag
   if (!pose.has_map) return std::nullopt;
   if (statistics_.images == 0 && !pose.camera.correction.corrected) return std::nullopt;
   follow_odometry(truth.robot, odometry);
-  if (pose.seeks_pose()) return std::nullopt;
+  if (pose.seeks_pose()) {
+    ++statistics_.searching;
+    return std::nullopt;
+  }
   const geometry::Vector6d error = geometry::step_between(true_camera(truth), pose.camera.X_WC);
   const PoseError off{error.head<3>().norm(), error.tail<3>().norm()};
   const auto n = static_cast<double>(++statistics_.images);

@@ -9,12 +9,14 @@
 namespace cgsr::sinks {
 
 /// How well a simulated robot knew where it was, by what was really there. Counts begin with the first correction; images in which it searched the whole
-/// map for its pose are left out.
+/// map for its pose are counted by themselves.
 struct PoseTruthStatistics {
   std::uint64_t images = 0;
   std::uint64_t corrected = 0;  ///< in which the image corrected the pose.
   std::uint64_t lost = 0;       ///< times the robot said that it is lost.
-  double mean_m = 0.0;          ///< of the camera's position error.
+  std::uint64_t searching =
+      0;  ///< images in which it searched the whole map, and said nothing of where it is; not among `images`.
+  double mean_m = 0.0;  ///< of the camera's position error.
   double worst_m = 0.0;
   double worst_s = 0.0;   ///< stamp of the worst position.
   double mean_rad = 0.0;  ///< of the camera's direction error, the whole rotation.

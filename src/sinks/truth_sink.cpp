@@ -58,6 +58,7 @@ void add_pose(const PoseTruthStatistics& pose, Summary& summary) {
   summary.json["pose"] = {{"images", pose.images},
                           {"corrected_share", share(pose.corrected, pose.images)},
                           {"lost", pose.lost},
+                          {"searching", pose.searching},
                           {"mean_cm", 100.0 * pose.mean_m},
                           {"worst_cm", 100.0 * pose.worst_m},
                           {"worst_at_s", pose.worst_s},
@@ -67,12 +68,13 @@ void add_pose(const PoseTruthStatistics& pose, Summary& summary) {
                           {"odometry_ends_off_cm", 100.0 * pose.odometry_ends_off_m},
                           {"odometry_worst_cm", 100.0 * pose.odometry_worst_m}};
   summary.text += fmt::format(
-      "pose by truth, from the first correction on: {} images, corrected in {:.1f} %, lost {} times; error {:.1f} cm "
-      "and {:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg at worst\n"
+      "pose by truth, from the first correction on: {} images, corrected in {:.1f} %, lost {} times, the whole map "
+      "searched in {} images more; error {:.1f} cm and {:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg "
+      "at worst\n"
       "{:.1f} m driven; odometry alone would have been {:.0f} cm off at worst, {:.0f} cm at the end\n\n",
-      pose.images, 100.0 * share(pose.corrected, pose.images), pose.lost, 100.0 * pose.mean_m, kDegrees * pose.mean_rad,
-      100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m, 100.0 * pose.odometry_worst_m,
-      100.0 * pose.odometry_ends_off_m);
+      pose.images, 100.0 * share(pose.corrected, pose.images), pose.lost, pose.searching, 100.0 * pose.mean_m,
+      kDegrees * pose.mean_rad, 100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m,
+      100.0 * pose.odometry_worst_m, 100.0 * pose.odometry_ends_off_m);
 }
 
 }  // namespace

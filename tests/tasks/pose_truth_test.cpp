@@ -48,7 +48,7 @@ TEST(PoseTruth, MeasuresFromTheFirstCorrectionOn) {
 }
 
 // A robot that searches the whole map says nowhere that it is anywhere.
-TEST(PoseTruth, LeavesOutASearchOfTheWholeMap) {
+TEST(PoseTruth, CountsASearchOfTheWholeMapByItself) {
   PoseTruth tally;
   const hal::ImageTruth truth;
   const hal::Odometry odometry;
@@ -64,6 +64,7 @@ TEST(PoseTruth, LeavesOutASearchOfTheWholeMap) {
   EXPECT_FALSE(tally.add(truth, seeks, odometry));
   EXPECT_TRUE(tally.add(truth, lost, odometry));
   EXPECT_EQ(tally.statistics().images, 3U);
+  EXPECT_EQ(tally.statistics().searching, 1U);
   EXPECT_EQ(tally.statistics().lost, 1U);
   EXPECT_EQ(tally.statistics().worst_m, 0.0);
 }
