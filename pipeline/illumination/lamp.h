@@ -22,6 +22,8 @@ struct LampParameters {
   double max_disagreement_m = 0.5;
   double min_pose_sigma_m = 0.01;
   double min_pose_sigma_deg = 0.3;
+  double pose_error_way_m = 1.5;
+  double pose_error_turn_deg = 115.0;
   int min_steady_images = 3;
   int max_missing_images = 6;
 
@@ -38,6 +40,11 @@ struct LampParameters {
                  "The smallest standard deviation of the robot's position that is used, whatever its estimate states.");
     visit.number("min_pose_sigma_deg", self.min_pose_sigma_deg, {0.0, 20.0}, "deg",
                  "The smallest standard deviation of the robot's heading that is used, whatever its estimate states.");
+    visit.number("pose_error_way_m", self.pose_error_way_m, {0.0, 1000.0}, "m",
+                 "The way over which the error of the robot's pose fades to 1/e; 0: it is another one in every image.");
+    visit.number(
+        "pose_error_turn_deg", self.pose_error_turn_deg, {0.0, 36000.0}, "deg",
+        "The turn over which the error of the robot's pose fades to 1/e; 0: it is another one in every image.");
     visit.number("min_steady_images", self.min_steady_images, {1, 1000}, "",
                  "The number of images that must agree before a lamp is accepted.");
     visit.number("max_missing_images", self.max_missing_images, {1, 1000}, "",

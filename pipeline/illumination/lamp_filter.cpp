@@ -1,6 +1,7 @@
 #include "pipeline/illumination/lamp_filter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,8 +21,25 @@ using Eigen::Vector3d;
 constexpr double kGate = 16.0;  // of one shadow, 2 degrees of freedom: 3 in 10,000 are further away
 constexpr double kRegistrationNoise =
     0.25;  // of the registration's variance, what changes from image to image; the rest is calibration
-constexpr double kStartSigma_m = 6.0;     // along the floor, before the first shadow
+constexpr double kStartSigma_m = 6.0;                          // along the floor, before the first shadow
+constexpr Eigen::Index kTips = 3, kTurn = 9, kPoseError = 12;  // in the state
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kMaxOwnShadow_m = 0.05;  // of a shadow from where its lamp's first estimate puts it
+
+// Of the steps that geometry::moved() takes, those along the floor: the rest of a robot's pose is known.
+constexpr std::array<Eigen::Index, 3> kAlongFloor{0, 1, 5};
+
+/// The robot where the state's error of the pose has it.
+geometry::Pose corrected(const geometry::Pose& X_WR, const Vector3d& error) {
+  geometry::Vector6d step = geometry::Vector6d::Zero();
+  step(kAlongFloor) = error;
+  return geometry::moved(X_WR, step);
+}
+
+/// The share that is left of an error that fades to 1/e over `fades`; 0: nothing is.
+double left_of(double passed, double fades) {
+  return fades > 0.0 ? std::exp(-passed / fades) : 0.0;
+}
 
 Matrix3d cross(const Vector3d& v) {
   Matrix3d m;
@@ -33,24 +51,26 @@ Matrix3d cross(const Vector3d& v) {
 
 LampFilter::LampFilter(const Board& board, const LampParameters& parameters) : board_(board), parameters_(parameters) {}
 
-LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const {
+LampFilter::Prediction LampFilter::predict(const State& x, std::size_t probe, const geometry::Pose& X_WR_told) const {
   Prediction prediction;
+  const geometry::Pose X_WR = corrected(X_WR_told, x.segment<3>(kPoseError));
   const Vector3d p_RL = X_WR.inverse() * Vector3d(x.head<3>());
   const Vector3d before_turn = board_.X_RB.inverse() * p_RL;
-  const Vector3d turn = x.tail<3>();
+  const Vector3d turn = x.segment<3>(kTurn);
   const Vector3d p_BL = before_turn + before_turn.cross(turn);
-  const Vector3d tip = board_.probe[probe].p_BA + x.segment<3>(3 + 3 * static_cast<Eigen::Index>(probe));
+  const Vector3d tip = board_.probe[probe].p_BA + x.segment<3>(kTips + 3 * static_cast<Eigen::Index>(probe));
   if (p_BL.z() < tip.z() + 0.05) return prediction;
   const auto model = shadow_of(p_BL, tip);
   prediction.p_BS = model.p_BS;
   const Matrix3d R_BW = (X_WR.linear() * board_.X_RB.linear()).transpose();
   const Eigen::Matrix<double, 2, 3> J_world = model.J_lamp * R_BW;
   prediction.J_state.leftCols<3>() = J_world;
-  prediction.J_state.middleCols<3>(3 + 3 * static_cast<Eigen::Index>(probe)) = model.J_tip;
-  prediction.J_state.rightCols<3>() = model.J_lamp * cross(before_turn);
+  prediction.J_state.middleCols<3>(kTips + 3 * static_cast<Eigen::Index>(probe)) = model.J_tip;
+  prediction.J_state.middleCols<3>(kTurn) = model.J_lamp * cross(before_turn);
   // The robot moved by a step is the lamp moved the other way.
   prediction.J_pose.leftCols<3>() = -J_world;
   prediction.J_pose.rightCols<3>() = J_world * cross(Vector3d(x.head<3>()) - X_WR.translation());
+  prediction.J_state.middleCols<3>(kPoseError) = prediction.J_pose(Eigen::all, kAlongFloor);
   prediction.valid = true;
   return prediction;
 }
@@ -102,15 +122,16 @@ void LampFilter::correct(Track& track, const TrackShadows& shadow, const Pose& p
   track.P = 0.5 * (P + P.transpose());
 }
 
-LampFilter::Track LampFilter::started(const LampEstimate& estimate, const geometry::Pose& X_WR) const {
+LampFilter::Track LampFilter::started(const LampEstimate& estimate, const Pose& pose) const {
   Track track;
-  track.x.head<3>() = X_WR * estimate.p_RL;
+  track.x.head<3>() = pose.X_WR * estimate.p_RL;
   track.x[2] = parameters_.height_m;
   track.P.diagonal().head<2>().setConstant(kStartSigma_m * kStartSigma_m);
   track.P(2, 2) = parameters_.height_sigma_m * parameters_.height_sigma_m;
   // Tip and foot both were measured, and what is seen hangs on their difference.
-  track.P.diagonal().segment<6>(3).setConstant(2.0 * board_.place_sigma_m * board_.place_sigma_m);
-  track.P.diagonal().tail<3>().setConstant(board_.turn_sigma_rad * board_.turn_sigma_rad);
+  track.P.diagonal().segment<6>(kTips).setConstant(2.0 * board_.place_sigma_m * board_.place_sigma_m);
+  track.P.diagonal().segment<3>(kTurn).setConstant(board_.turn_sigma_rad * board_.turn_sigma_rad);
+  track.P.block<3, 3>(kPoseError, kPoseError) = pose.lasting;
   return track;
 }
 
@@ -138,14 +159,37 @@ bool LampFilter::should_show(const Track& track, std::size_t probe, const geomet
 
 LampFilter::Pose LampFilter::pose_of(const ProbeObservation& observation, const geometry::Pose& X_WR,
                                      const geometry::Matrix6d& pose_covariance) const {
-  Pose pose{.X_WR = X_WR, .covariance = pose_covariance, .registration = observation.registration.covariance};
+  Pose pose{.X_WR = X_WR,
+            .lasting = pose_covariance(kAlongFloor, kAlongFloor),
+            .covariance = pose_covariance,
+            .registration = kRegistrationNoise * observation.registration.covariance};
   const double place = parameters_.min_pose_sigma_m * parameters_.min_pose_sigma_m;
-  const double turn = parameters_.min_pose_sigma_deg * std::numbers::pi / 180.0;
-  pose.covariance(0, 0) = std::max(pose.covariance(0, 0), place);
-  pose.covariance(1, 1) = std::max(pose.covariance(1, 1), place);
-  pose.covariance(5, 5) = std::max(pose.covariance(5, 5), turn * turn);
-  pose.registration *= kRegistrationNoise;
+  const double turn = parameters_.min_pose_sigma_deg * kRadPerDeg;
+  pose.lasting(0, 0) = std::max(pose.lasting(0, 0), place);
+  pose.lasting(1, 1) = std::max(pose.lasting(1, 1), place);
+  pose.lasting(2, 2) = std::max(pose.lasting(2, 2), turn * turn);
+  for (const Eigen::Index i : kAlongFloor) {
+    pose.covariance.row(i).setZero();
+    pose.covariance.col(i).setZero();
+  }
   return pose;
+}
+
+// As far as the robot has come since the last image, and what the pose became less sure of meanwhile.
+void LampFilter::fade_pose_errors(const Pose& pose) {
+  if (!before_) return;
+  const geometry::Vector6d moved = geometry::step_between(before_->X_WR, pose.X_WR);
+  const double left = left_of(moved.head<3>().norm(), parameters_.pose_error_way_m) *
+                      left_of(moved.tail<3>().norm(), parameters_.pose_error_turn_deg * kRadPerDeg);
+  const Vector3d grown = (pose.lasting - before_->lasting).diagonal().cwiseMax(0.0);
+  for (int t = 0; t < count_; ++t) {
+    Track& track = track_[static_cast<std::size_t>(t)];
+    track.x.segment<3>(kPoseError) *= left;
+    track.P.middleRows<3>(kPoseError) *= left;
+    track.P.middleCols<3>(kPoseError) *= left;
+    track.P.block<3, 3>(kPoseError, kPoseError) += (1.0 - left * left) * pose.lasting;
+    track.P.diagonal().segment<3>(kPoseError) += left * left * grown;
+  }
 }
 
 // Whose shadow is it? The nearest pair of track and shadow first.
@@ -193,7 +237,7 @@ void LampFilter::correct_tracks(const ProbeObservation& observation, const Pose&
     }
     bool expected = false;
     for (int i = 0; i < board_.probes; ++i) {
-      if ((observation.missing & (1 << i)) != 0) continue;
+      if (((observation.missing | observation.saturated) & (1 << i)) != 0) continue;
       expected = expected || should_show(track, static_cast<std::size_t>(i), pose.X_WR, observation.registration.X_BC);
     }
     if (expected) ++track.known.missed;
@@ -219,7 +263,7 @@ void LampFilter::start_tracks(const ProbeObservation& observation, const Pose& p
   for (int i = 0; i < lamps.count && count_ < kMostLamps; ++i) {
     const LampEstimate& estimate = lamps.lamp[static_cast<std::size_t>(i)];
     if (estimate.status != LampStatus::kFound) continue;
-    Track track = started(estimate, pose.X_WR);
+    Track track = started(estimate, pose);
     correct(track, shadows_of(estimate, rest), pose, 4);
     track.known.seen = 1;
     track.known.steady = parameters_.min_steady_images <= 1;
@@ -266,6 +310,8 @@ LampChange LampFilter::update(const ProbeObservation& observation, const geometr
   if (observation.status != ObservationStatus::kSeen && observation.status != ObservationStatus::kNoShadow)
     return change;
   const Pose pose = pose_of(observation, X_WR, pose_covariance);
+  fade_pose_errors(pose);
+  before_ = pose;
   const Assignment assigned = assign(observation, pose);
   correct_tracks(observation, pose, assigned, change);
   start_tracks(observation, pose, assigned, change);

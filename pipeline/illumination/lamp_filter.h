@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -24,9 +25,9 @@ struct LampChange {
   bool gone = false;   ///< a steady one was given up: switched off, or moved.
 };
 
-/// Pulls the observations of many images together while the robot moves: each lamp is a Kalman filter over its place and over what was measured
-/// wrongly on the board (tips and the board's turn), which stays the same from image to image. So standing still does not feign accuracy, and turning
-/// around tells lamp from board.
+/// Pulls the observations of many images together while the robot moves: each lamp is a Kalman filter over its place, over what was measured
+/// wrongly on the board (tips and the board's turn), which stays the same from image to image, and over the error of the robot's pose, which fades with
+/// the way (a Gauss-Markov process of first order). So standing still does not feign accuracy, and turning around tells lamp from board.
 /// Ours: the dissertation (5.1) locates the lamp from one image. The filter (Kalman 1960) is an iterated one (Bell and Cathey 1993).
 ///
 /// Threads: one. Nothing is allocated.
@@ -43,11 +44,14 @@ class LampFilter {
   [[nodiscard]] int count() const { return count_; }
   /// The best known first.
   [[nodiscard]] const KnownLamp& lamp(int i) const { return track_[static_cast<std::size_t>(i)].known; }
-  void clear() { count_ = 0; }
+  void clear() {
+    count_ = 0;
+    before_.reset();
+  }
 
  private:
-  // Lamp 0..2, tips 3..5 and 6..8, the board's turn 9..11.
-  static constexpr int kState = 12;
+  // Lamp 0..2, tips 3..5 and 6..8, the board's turn 9..11, the pose's error along x and y and in heading 12..14.
+  static constexpr int kState = 15;
   using State = Eigen::Matrix<double, kState, 1>;
   using Covariance = Eigen::Matrix<double, kState, kState>;
   struct Track {
@@ -62,10 +66,11 @@ class LampFilter {
     bool valid = false;
   };
 
-  // The robot's pose in an image, with the errors that change from image to image.
+  // The robot's pose in an image. What lasts of its error is in the state; the rest changes from image to image.
   struct Pose {
     geometry::Pose X_WR;
-    geometry::Matrix6d covariance;    // of X_WR
+    Eigen::Matrix3d lasting;          // covariance of the error along x and y and in heading
+    geometry::Matrix6d covariance;    // of the rest
     geometry::Matrix6d registration;  // of the camera against the board
   };
   using TrackShadows = std::array<const ProbeShadow*, kMostProbes>;
@@ -77,6 +82,7 @@ class LampFilter {
   [[nodiscard]] Prediction predict(const State& x, std::size_t probe, const geometry::Pose& X_WR) const;
   [[nodiscard]] Pose pose_of(const ProbeObservation& observation, const geometry::Pose& X_WR,
                              const geometry::Matrix6d& pose_covariance) const;
+  void fade_pose_errors(const Pose& pose);
   [[nodiscard]] Assignment assign(const ProbeObservation& observation, const Pose& pose) const;
   void correct_tracks(const ProbeObservation& observation, const Pose& pose, const Assignment& assigned,
                       LampChange& change);
@@ -89,12 +95,13 @@ class LampFilter {
   void correct(Track& track, const TrackShadows& shadow, const Pose& pose, int iterations) const;
   [[nodiscard]] bool should_show(const Track& track, std::size_t probe, const geometry::Pose& X_WR,
                                  const geometry::Pose& X_BC) const;
-  Track started(const LampEstimate& estimate, const geometry::Pose& X_WR) const;
+  [[nodiscard]] Track started(const LampEstimate& estimate, const Pose& pose) const;
 
   Board board_;
   LampParameters parameters_;
   std::array<Track, kMostLamps> track_;
   int count_ = 0;
+  std::optional<Pose> before_;  // in the last image that showed the board
 };
 
 }  // namespace cgsr::illumination

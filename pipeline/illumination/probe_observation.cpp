@@ -3,8 +3,7 @@
 namespace cgsr::illumination {
 namespace {
 
-constexpr double kMostSaturated = 0.3;  // of the board's places that were looked at
-constexpr int kAlong = 8;               // of these, where the board's edges are lost in the light
+constexpr int kAlong = 8;  // of these, where the board's edges are lost in the light
 constexpr int kAcross = 16;
 
 /// \return the share of the board's places, seen from where the mount says, that are as bright as the camera can tell.
@@ -75,7 +74,6 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
   }
   last_X_BC_ = observation.registration.X_BC;
   int shadows = 0;
-  double saturated = 0.0;
   for (std::size_t i = 0; i < finders_.size(); ++i) {
     if ((observation.registration.cones & (1 << i)) == 0) {
       observation.missing |= 1 << i;
@@ -83,7 +81,7 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
     }
     observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC, brightest);
     shadows += observation.probe[i].count;
-    saturated = std::max(saturated, finders_[i].share_saturated());
+    if (finders_[i].is_saturated()) observation.saturated |= 1 << i;
   }
   bool whole = false;
   for (const auto& found : observation.probe) {
@@ -91,7 +89,7 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
   }
   if (!whole) shadows += look_beside_cones(luma, observation);
   observation.status = shadows > 0                  ? ObservationStatus::kSeen
-                       : saturated > kMostSaturated ? ObservationStatus::kSaturated
+                       : observation.saturated != 0 ? ObservationStatus::kSaturated
                                                     : ObservationStatus::kNoShadow;
   return observation;
 }
@@ -106,7 +104,7 @@ int ProbeObserver::look_beside_cones(const LumaView& luma, ProbeObservation& obs
   }
   int more = 0;
   for (std::size_t i = 0; i < strips_.size(); ++i) {
-    if ((observation.missing & (1 << i)) != 0) continue;
+    if (((observation.missing | observation.saturated) & (1 << i)) != 0) continue;
     ProbeShadow shadow;
     if (!strips_[i].find(luma, view, behind, shadow)) continue;
     more += 1 - observation.probe[i].count;

@@ -422,6 +422,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
   }
   look_around(image, view);
   saturated_ = share_brighter_than(saturation);
+  if (is_saturated()) return found;
   take_plane_away();
   noise_ = noise();
   std::array<int, 4> tried{};

@@ -14,6 +14,8 @@
 
 namespace cgsr::illumination {
 
+inline constexpr double kMostSaturated = 0.1;  ///< of the places on the board that were looked at.
+
 /// Finds the shadows of one probe (Alg. 5.1). Where the dissertation takes Canny's edges and Hough's lines, and then the point where two of them
 /// meet, this looks for the meeting point itself: the two lines of a cone's shadow are the tangents from the shadow of its tip to its base, so the
 /// shadow has two unknowns. A coarse search on rings around the base finds where a dark wedge is, its axis how long it is, and ShadowFit refines it. What does not have that shape (texture, dirt, a hand) is not taken for it.
@@ -29,14 +31,15 @@ class ShadowFinder {
     int count = 0;
   };
   /// \param X_BC  the camera against the board, registered in this image.
-  /// \param saturation  the brightest level that the image can hold.
+  /// \param saturation  the brightest level that the image can hold. Where more than kMostSaturated of the board about the probe is as bright, the edges
+  ///        of its shadow are not where the light is half hidden, but where the image begins to hold it: none is looked for.
   Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
 
   /// Compares every wedge with every ray, which costs five times as much: what the quick search is judged by.
   void search_everywhere() { everywhere_ = true; }
 
-  /// Of the places around the probe that the last image showed, the share that has no level left.
-  [[nodiscard]] double share_saturated() const { return saturated_; }
+  /// Whether the last image has no level left for what is around the probe.
+  [[nodiscard]] bool is_saturated() const { return saturated_ > kMostSaturated; }
 
  private:
   static constexpr int kRings = 8;

@@ -1,10 +1,16 @@
 #include "pipeline/illumination/lamp_filter.h"
 
+#include <cmath>
+#include <random>
+
+#include <Eigen/LU>
+
 #include "tests/illumination/drawn_board.h"
 
 namespace cgsr::illumination {
 namespace {
 
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 ProbeObservation seen_from(const Board& real, const geometry::Pose& X_WR, const std::vector<Vector3d>& lamps_W) {
@@ -65,6 +71,72 @@ TEST(LampFilter, StandingStillDoesNotFeignAccuracy) {
   const double first = std::sqrt(filter.lamp(0).covariance.trace());
   for (int i = 0; i < 100; ++i) filter.update(seen_from(board, X_WR, {lamp}), X_WR, kPose);
   EXPECT_GT(std::sqrt(filter.lamp(0).covariance.trace()), 0.6 * first);
+}
+
+TEST(LampFilter, StandingStillDoesNotMakeThePoseSurer) {
+  const Board board = shipped_board();
+  const Vector3d lamp(4.0, 3.0, 2.75);
+  const auto X_WR = around(lamp, 30.0, 200.0);
+  const geometry::Matrix6d pose = 9e-4 * geometry::Matrix6d::Identity();
+  const auto sigma_after = [&](const LampParameters& parameters) {
+    LampFilter filter(board, parameters);
+    for (int i = 0; i < 100; ++i) filter.update(seen_from(board, X_WR, {lamp}), X_WR, pose);
+    return std::sqrt(filter.lamp(0).covariance.topLeftCorner<2, 2>().trace());
+  };
+  LampParameters anew;
+  anew.pose_error_way_m = 0.0;
+  EXPECT_GT(sigma_after({}), 0.04) << "3 cm along x and along y";
+  EXPECT_LT(sigma_after(anew), 0.5 * sigma_after({})) << "an error of each image by itself is averaged out";
+}
+
+// Errors that fade over 1.5 m along a way of 2.4 m: what the filter states has to hold for them, which it would not if it took them for errors of each image.
+TEST(LampFilter, StatesHowFarItIsOffWhenErrorsOfThePoseLast) {
+  constexpr int kDrives = 60;
+  constexpr double kSigma_m = 0.03;
+  constexpr double kBound = 9.21;  // two degrees of freedom, 99 %
+  Board board = shipped_board();   // measured so well that the pose's error is the largest
+  board.place_sigma_m = 1e-4;
+  board.turn_sigma_rad = 1e-4;
+  const Vector3d lamp(4.0, 3.0, 2.75);
+  geometry::Matrix6d pose = geometry::Matrix6d::Zero();
+  pose(0, 0) = pose(1, 1) = kSigma_m * kSigma_m;
+  LampParameters lasting;
+  lasting.height_sigma_m = 0.001;
+  LampParameters anew = lasting;
+  anew.pose_error_way_m = 0.0;
+  std::minstd_rand bits(1);
+  const auto normal = [&bits] {  // nearly
+    double sum = -6.0;
+    for (int i = 0; i < 12; ++i) sum += static_cast<double>(bits()) / static_cast<double>(std::minstd_rand::max());
+    return sum;
+  };
+  int within = 0;
+  int within_if_anew = 0;
+  for (int drive = 0; drive < kDrives; ++drive) {
+    LampFilter lasting_filter(board, lasting);
+    LampFilter anew_filter(board, anew);
+    Vector2d off(kSigma_m * normal(), kSigma_m * normal());
+    for (int i = 0; i < 40; ++i) {
+      const auto X_WR = around(lamp, 2.9 * i, 120.0);
+      const double left = std::exp(-0.06 / 1.5);
+      const double fresh = kSigma_m * std::sqrt(1.0 - left * left);
+      if (i > 0) off = left * off + fresh * Vector2d(normal(), normal());
+      geometry::Pose told = X_WR;
+      told.translation().head<2>() += off;
+      const auto seen = seen_from(board, X_WR, {lamp});
+      lasting_filter.update(seen, told, pose);
+      anew_filter.update(seen, told, pose);
+    }
+    const auto is_within = [&](const LampFilter& filter) {
+      const Vector2d error = (filter.lamp(0).p_WL - lamp).head<2>();
+      const Eigen::Matrix2d P = filter.lamp(0).covariance.topLeftCorner<2, 2>();
+      return error.dot(P.inverse() * error) < kBound;
+    };
+    within += is_within(lasting_filter) ? 1 : 0;
+    within_if_anew += is_within(anew_filter) ? 1 : 0;
+  }
+  EXPECT_GE(within, 57);
+  EXPECT_LT(within_if_anew, 50);
 }
 
 TEST(LampFilter, TwoLampsAreKeptApartAndOneThatGoesOffIsNoticed) {

@@ -236,6 +236,15 @@ TEST(ProbeObservationFault, EachHasItsName) {
   const auto saturated = draw(board, board.X_BC, bright);
   EXPECT_EQ(observer.observe(saturated.view()).status, ObservationStatus::kSaturated);
 
+  // A shadow stands out clearly where the board around it is as bright as the image holds, and is smaller than it should be: it is no answer.
+  Drawing clipped = drawing;
+  clipped.board_level = 300.0;
+  clipped.shadow_level = 150.0;
+  const auto none = observer.observe(draw(board, board.X_BC, clipped).view());
+  EXPECT_EQ(none.status, ObservationStatus::kSaturated);
+  EXPECT_EQ(none.saturated, 3);
+  EXPECT_EQ(none.probe[0].count + none.probe[1].count, 0);
+
   Drawing one_gone = drawing;
   one_gone.right_cone = false;
   const auto without = draw(board, board.X_BC, one_gone);

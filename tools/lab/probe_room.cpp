@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hal/sim/calibration/calibration_files.h"
+#include "hal/sim/render/pixel_rays.h"
 #include "pipeline/geometry/pose.h"
 #include "platform/config/reader.h"
 #include "tools/lab/source_path.h"
@@ -17,8 +18,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kRobotRadius_m = 0.35;
-constexpr double kTallest_m = 1.3;  // what hangs higher is in nobody's way
-constexpr double kLongest_m = 3.0;  // longer things are walls and floors
+constexpr double kBoardRadius_m = 0.25;
+constexpr float kLowest_m = 0.01F;  // above the floor
+const Vector3d kElsewhere(-100.0, -100.0, 0.0);
 
 std::array<double, 3> triple(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
@@ -34,6 +36,18 @@ sim::CalibrationErrors copy_errors() {
 }
 
 }  // namespace
+
+Result<std::unique_ptr<ProbeRoom>> ProbeRoom::of(const sim::WorldSpec& spec, const std::filesystem::path& file) {
+  auto world = sim::build_world(spec, file);
+  if (!world) return tl::unexpected(world.error());
+  std::unique_ptr<ProbeRoom> room(new ProbeRoom(std::move(*world)));
+  const sim::CameraModel& camera = room->world_.scene.robots.front().camera;
+  auto photographer = sim::Photographer::make(room->world_.scene, camera, {});
+  if (!photographer) return tl::unexpected(photographer.error());
+  room->photographer_ = std::move(*photographer);
+  room->yuyv_.resize(std::size_t{2} * static_cast<std::size_t>(camera.width_px * camera.height_px));
+  return room;
+}
 
 Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const ProbeRoomLight& light) {
   const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / "home.toml";
@@ -55,15 +69,19 @@ Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const ProbeRoomLight& light) 
     spec->lamp[1].name = "second lamp";
     spec->lamp[1].position_m = triple(*light.second_p_WL);
   }
-  auto world = sim::build_world(*spec, file);
-  if (!world) return tl::unexpected(world.error());
-  std::unique_ptr<ProbeRoom> room(new ProbeRoom(std::move(*world)));
-  const sim::CameraModel& camera = room->world_.scene.robots.front().camera;
-  auto photographer = sim::Photographer::make(room->world_.scene, camera, {});
-  if (!photographer) return tl::unexpected(photographer.error());
-  room->photographer_ = std::move(*photographer);
-  room->yuyv_.resize(std::size_t{2} * static_cast<std::size_t>(camera.width_px * camera.height_px));
-  return room;
+  return of(*spec, file);
+}
+
+Result<std::unique_ptr<ProbeRoom>> ProbeRoom::make(const sim::GeneratedHome& home, std::size_t lamp) {
+  sim::WorldSpec spec = home.world;
+  std::erase_if(spec.robot, [](const sim::RobotSpec& robot) { return !robot.has_board; });
+  spec.object.clear();
+  for (std::size_t i = 0; i < home.lights.lamps.size(); ++i) {
+    spec.lamp[i].on = i == lamp;
+    spec.lamp[i].switch_name.clear();
+  }
+  std::swap(spec.lamp[0], spec.lamp[lamp]);
+  return of(spec, spec.name);
 }
 
 sim::SceneState ProbeRoom::state(const sim::Pose& X_WR) const {
@@ -80,6 +98,7 @@ ImageView ProbeRoom::shoot(const sim::Pose& X_WR, std::uint32_t seed, std::uint6
   const sim::RobotBody& body = world_.scene.robots.front();
   const sim::Moment moment{state(X_WR), X_WR * sim::mount_of(body)};
   const std::ptrdiff_t stride = std::ptrdiff_t{2} * body.camera.width_px;
+  robot_is_elsewhere_ = false;
   photographer_->take({moment}, world_.sensor, {seed, number},
                       {yuyv_.data(), body.camera.width_px, body.camera.height_px, stride});
   return {yuyv_.data(), body.camera.width_px, body.camera.height_px, stride, PixelFormat::kYuyv};
@@ -87,6 +106,7 @@ ImageView ProbeRoom::shoot(const sim::Pose& X_WR, std::uint32_t seed, std::uint6
 
 std::vector<sim::ProbeShadow> ProbeRoom::truth(const sim::Pose& X_WR, int lamp) {
   const sim::SceneState now = state(X_WR);
+  robot_is_elsewhere_ = false;
   photographer_->renderer().move_to(now);
   return sim::probe_shadows(photographer_->renderer(), now, X_WR * sim::mount_of(world_.scene.robots.front()), 0, lamp);
 }
@@ -96,26 +116,37 @@ Result<void> ProbeRoom::write_copy(std::uint32_t seed, const std::filesystem::pa
   return sim::write_calibration(sim::calibrated_copy(world_.scene, 0, errors, seed), errors, seed, folder);
 }
 
-bool ProbeRoom::is_free(const sim::Pose& X_WR) const {
-  const Vector3d p = X_WR.translation();
-  if (p.x() < 0.45 || p.x() > 8.55 || p.y() < 0.45 || p.y() > 6.0) return false;
-  const Vector3d board = X_WR * Vector3d(0.6, 0.0, 0.0);
-  if (board.x() < 0.4 || board.x() > 8.6 || board.y() < 0.4 || board.y() > 6.0) return false;
-  for (const sim::Part& part : world_.scene.parts) {
-    if (part.figure >= 0 || !part.casts_shadow || part.mesh.position_m.empty()) continue;
-    Eigen::AlignedBox3f box;
-    for (const auto& corner : part.mesh.position_m) box.extend(corner);
-    if (static_cast<double>(box.min().z()) > kTallest_m || static_cast<double>(box.max().z()) < 0.02) continue;
-    if (static_cast<double>(box.sizes().maxCoeff()) > kLongest_m) continue;
-    const Eigen::Vector3f q = p.cast<float>();
-    const float dx = std::max({box.min().x() - q.x(), q.x() - box.max().x(), 0.0F});
-    const float dy = std::max({box.min().y() - q.y(), q.y() - box.max().y(), 0.0F});
-    if (std::hypot(static_cast<double>(dx), static_cast<double>(dy)) < kRobotRadius_m) return false;
+bool ProbeRoom::is_clear(const Vector3d& middle, double radius_m) const {
+  constexpr int kAround = 24;
+  constexpr std::array kHeights_m{0.05F, 0.2F, 0.4F, 0.6F, 0.8F, 1.0F, 1.2F};
+  const sim::Tracer& tracer = photographer_->renderer().tracer();
+  const auto at = [](const Vector3d& p, float z) {
+    return Eigen::Vector3f(static_cast<float>(p.x()), static_cast<float>(p.y()), z);
+  };
+  const auto sees = [&tracer](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+    return sim::sees(tracer, from, to, sim::kSightRays);
+  };
+  const auto is_floor = [&](const Vector3d& p) {
+    return !sees(at(p, kLowest_m), at(p, -kLowest_m)) && sees(at(p, kHeights_m.back()), at(p, kLowest_m));
+  };
+  if (!is_floor(middle)) return false;
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kAround;
+    const Vector3d rim = middle + radius_m * Vector3d(std::cos(angle), std::sin(angle), 0.0);
+    if (!is_floor(rim)) return false;
+    if (std::ranges::any_of(kHeights_m, [&](float z) { return !sees(at(middle, z), at(rim, z)); })) return false;
   }
   return true;
 }
 
-std::optional<sim::Pose> ProbeRoom::standpoint(double angle_rad, Random& random) const {
+bool ProbeRoom::is_free(const sim::Pose& X_WR) {
+  if (!std::exchange(robot_is_elsewhere_, true))  // it is not in its own way
+    photographer_->renderer().move_to(state(sim::pose_at(kElsewhere, 0.0)));
+  const Vector3d board = X_WR * world_.scene.robots.front().board.p_RB;
+  return is_clear(X_WR.translation(), kRobotRadius_m) && is_clear({board.x(), board.y(), 0.0}, kBoardRadius_m);
+}
+
+std::optional<sim::Pose> ProbeRoom::standpoint(double angle_rad, Random& random) {
   const sim::ProbeBoard& board = world_.scene.robots.front().board;
   const Vector3d lamp = moved_[0].value_or(p_WL());
   const double flat_m = (lamp.z() - board.p_RB.z()) * std::tan(angle_rad);
@@ -126,6 +157,15 @@ std::optional<sim::Pose> ProbeRoom::standpoint(double angle_rad, Random& random)
     const Vector3d middle(lamp.x() + flat_m * std::cos(around), lamp.y() + flat_m * std::sin(around), 0.0);
     X_WR.translation() = middle - X_WR.linear() * Vector3d(board.p_RB.x(), board.p_RB.y(), 0.0);
     if (is_free(X_WR)) return X_WR;
+  }
+  return std::nullopt;
+}
+
+std::optional<sim::Pose> ProbeRoom::lit_standpoint(double least_rad, double most_rad, Random& random) {
+  constexpr int kMostDraws = 400;
+  for (int draw = 0; draw < kMostDraws; ++draw) {
+    const auto X_WR = standpoint(random.uniform(least_rad, most_rad), random);
+    if (X_WR && std::ranges::any_of(truth(*X_WR), &sim::ProbeShadow::visible)) return X_WR;
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "hal/sim/calibration/calibrated_copy.h"
+#include "hal/sim/generator/home.h"
 #include "hal/sim/render/photographer.h"
 #include "hal/sim/render/truth_images.h"
 #include "hal/sim/worlds/world.h"
@@ -28,10 +30,14 @@ struct ProbeRoomLight {
   double ambient = 1.0;                        ///< of the world's ambient light.
 };
 
-/// The living room of config/worlds/home.toml with the lamp robot, its probe board and a ball-shaped lamp: chapter 5's shadows with their truth.
+/// A lit home with the lamp robot and its probe board: chapter 5's shadows with their truth.
 class ProbeRoom {
  public:
+  /// The living room of config/worlds/home.toml with a ball-shaped lamp.
   static Result<std::unique_ptr<ProbeRoom>> make(const ProbeRoomLight& light);
+
+  /// A home that was drawn, as it is by day or night, with one of its lamps (home.lights.lamps) switched on and the others off.
+  static Result<std::unique_ptr<ProbeRoom>> make(const sim::GeneratedHome& home, std::size_t lamp);
 
   /// The image of a robot that stands at X_WR. Valid until the next one.
   ImageView shoot(const sim::Pose& X_WR, std::uint32_t seed, std::uint64_t number);
@@ -42,11 +48,14 @@ class ProbeRoom {
   /// Writes what a copy of this robot and room that was measured with the stated errors says: sim::write_calibration().
   [[nodiscard]] Result<void> write_copy(std::uint32_t seed, const std::filesystem::path& folder) const;
 
-  /// Can a robot stand there: within the walls and in no furniture?
-  [[nodiscard]] bool is_free(const sim::Pose& X_WR) const;
+  /// Is there nothing but floor under the robot and its board, and nothing beside them that reaches to its camera or less? By rays.
+  [[nodiscard]] bool is_free(const sim::Pose& X_WR);
 
   /// A standpoint at which the light comes to the middle of the board at this angle from the vertical, from anywhere around.
-  [[nodiscard]] std::optional<sim::Pose> standpoint(double angle_rad, Random& random) const;
+  [[nodiscard]] std::optional<sim::Pose> standpoint(double angle_rad, Random& random);
+
+  /// A standpoint at which the light comes from between these angles, and from which the shadow of at least one tip can be seen, as the truth says.
+  [[nodiscard]] std::optional<sim::Pose> lit_standpoint(double least_rad, double most_rad, Random& random);
 
   [[nodiscard]] Eigen::Vector3d p_WL(int lamp = 0) const {
     return world_.scene.lamps[static_cast<std::size_t>(lamp)].p_WL;
@@ -59,11 +68,14 @@ class ProbeRoom {
 
  private:
   explicit ProbeRoom(sim::World world) : world_(std::move(world)) {}
-  sim::SceneState state(const sim::Pose& X_WR) const;
+  static Result<std::unique_ptr<ProbeRoom>> of(const sim::WorldSpec& spec, const std::filesystem::path& file);
+  [[nodiscard]] sim::SceneState state(const sim::Pose& X_WR) const;
+  [[nodiscard]] bool is_clear(const Eigen::Vector3d& middle, double radius_m) const;
 
   sim::World world_;
   std::unique_ptr<sim::Photographer> photographer_;
   std::vector<std::uint8_t> yuyv_;
+  bool robot_is_elsewhere_ = false;  ///< as the tracer has it: for questions about the room alone.
   std::array<std::optional<Eigen::Vector3d>, 2> moved_;
   std::array<bool, 2> on_{true, true};
   double factor_ = 1.0;

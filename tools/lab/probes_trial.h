@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "pipeline/stages/probes_stage.h"
 #include "platform/error.h"
 #include "src/config/robot.h"
+#include "tools/lab/experiment.h"
 #include "tools/lab/probe_room.h"
 
 namespace cgsr::lab {
@@ -23,5 +27,28 @@ struct LampError {
 
 /// \param off_m  estimate minus truth.
 LampError lamp_error(const Eigen::Vector3d& off_m, const Eigen::Matrix3d& covariance);
+
+/// What the images of one lamp, one by one, told of its place.
+struct LampAnswers {
+  std::vector<double> error_cm, sigma_cm;
+  int asked = 0;
+  int within_bound = 0;
+  std::map<std::string, int> unanswered;  ///< images, by reason.
+
+  /// \param p_RL  where the lamp truly is.
+  void judge(const Eigen::Vector3d& p_RL, const stages::LampReport& report);
+};
+
+/// Means of lamps, or of homes with one each.
+class AnswersByLamp {
+ public:
+  /// Nothing where it was not asked.
+  void add(const LampAnswers& lamp);
+  /// Intervals are over the lamps.
+  void add_rows(const std::string& row, std::uint64_t seed, Report& report) const;
+
+ private:
+  std::vector<double> answered_, error_cm_, sigma_cm_, within_bound_;
+};
 
 }  // namespace cgsr::lab

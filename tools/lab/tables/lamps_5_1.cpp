@@ -23,11 +23,9 @@ namespace cgsr::lab {
 namespace {
 
 using Eigen::Vector3d;
-using illumination::LampStatus;
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr int kPerLamp = 8;
-constexpr int kMostDraws = 400;  // for one standpoint
 constexpr double kHeightSigma_m = 0.02;
 constexpr std::array kRadii_m{0.02, 0.05, 0.10, 0.15};  // bins of the rows
 
@@ -53,52 +51,6 @@ DrawnLamp draw_lamp(Random& random) {
   return drawn;
 }
 
-/// What one lamp's images gave.
-struct OfLamp {
-  std::vector<double> error_cm, sigma_cm;
-  int asked = 0;
-  int within_bound = 0;
-};
-
-/// A value per lamp.
-struct ByLamp {
-  std::vector<double> answered, error_cm, sigma_cm, within_bound;
-
-  void add(const OfLamp& lamp) {
-    if (lamp.asked == 0) return;
-    const auto count = static_cast<double>(lamp.error_cm.size());
-    answered.push_back(count / lamp.asked);
-    if (lamp.error_cm.empty()) return;
-    error_cm.push_back(mean(lamp.error_cm));
-    sigma_cm.push_back(mean(lamp.sigma_cm));
-    within_bound.push_back(lamp.within_bound / count);
-  }
-};
-
-void judge(const Vector3d& p_RL, const stages::LampReport& report, OfLamp& lamp,
-           std::map<std::string, int>& unanswered) {
-  ++lamp.asked;
-  if (report.single_image.count == 0 || report.single_image.status != LampStatus::kFound) {
-    ++unanswered[std::string(reason_of(report))];
-    return;
-  }
-  const auto& estimate = report.single_image.lamp[0];
-  const LampError off = lamp_error(estimate.p_RL - p_RL, estimate.covariance);
-  lamp.error_cm.push_back(off.error_cm);
-  lamp.sigma_cm.push_back(off.sigma_cm);
-  lamp.within_bound += off.within_bound ? 1 : 0;
-}
-
-/// A free standpoint from which the shadow of a tip can be seen, as the simulator's truth says.
-std::optional<sim::Pose> stand(ProbeRoom& room, Random& random) {
-  for (int draw = 0; draw < kMostDraws; ++draw) {
-    const auto X_WR = room.standpoint(random.uniform(20.0, 60.0) * kRadPerDeg, random);
-    if (!X_WR) continue;
-    if (std::ranges::any_of(room.truth(*X_WR), &sim::ProbeShadow::visible)) return *X_WR;
-  }
-  return std::nullopt;
-}
-
 class LampTrials {
  public:
   LampTrials(const Setting& setting, const config::Robot& robot) : setting_(&setting), robot_(robot) {}
@@ -111,9 +63,9 @@ class LampTrials {
     illumination::LampParameters lamp = robot_.lamp;
     lamp.height_m = drawn.lamp_height_m;
     lamp.height_sigma_m = kHeightSigma_m;
-    std::array<OfLamp, kContenders> found;
+    std::array<LampAnswers, kContenders> found;
     for (int image = 0; image < kPerLamp; ++image) {
-      const auto X_WR = stand(**room, random);
+      const auto X_WR = (*room)->lit_standpoint(20.0 * kRadPerDeg, 60.0 * kRadPerDeg, random);
       if (!X_WR) continue;
       const auto seed = static_cast<std::uint32_t>(random.next());
       const ImageView view = (*room)->shoot(*X_WR, seed, static_cast<std::uint64_t>(image));
@@ -123,11 +75,12 @@ class LampTrials {
         if (c != kNotTold) robot.probes.shadow.lamp_radius_sigma_m = kKnown_m;
         auto stage = measured_probes(**room, robot, seed, lamp);
         if (!stage) return tl::unexpected(stage.error());
-        judge(X_WR->inverse() * (*room)->p_WL(), stage->update(view, nullptr), found[c], unanswered_[c]);
+        found[c].judge(X_WR->inverse() * (*room)->p_WL(), stage->update(view, nullptr));
       }
     }
     for (std::size_t c = 0; c < kContenders; ++c) {
       all_[c].add(found[c]);
+      for (const auto& [why, count] : found[c].unanswered) unanswered_[c][why] += count;
       of_radius_[c][bin_of(drawn.light.radius_m)].add(found[c]);
     }
     return {};
@@ -135,10 +88,11 @@ class LampTrials {
 
   void add_rows(Report& report) const {
     for (std::size_t c = 0; c < kContenders; ++c) {
-      add_row(std::string(kNames[c]), all_[c], report);
+      all_[c].add_rows(std::string(kNames[c]), setting_->seed, report);
       for (std::size_t bin = 0; bin < of_radius_[c].size(); ++bin) {
-        add_row(fmt::format("{}, {:.0f} to {:.0f} cm", kNames[c], 100.0 * kRadii_m[bin], 100.0 * kRadii_m[bin + 1]),
-                of_radius_[c][bin], report);
+        of_radius_[c][bin].add_rows(
+            fmt::format("{}, {:.0f} to {:.0f} cm", kNames[c], 100.0 * kRadii_m[bin], 100.0 * kRadii_m[bin + 1]),
+            setting_->seed, report);
       }
       for (const auto& [why, count] : unanswered_[c]) {
         report.notes.push_back(fmt::format("{}: {} images not answered: {}.", kNames[c], count, why));
@@ -152,19 +106,10 @@ class LampTrials {
     return static_cast<std::size_t>(above - kRadii_m.begin()) - 1;
   }
 
-  void add_row(const std::string& row, const ByLamp& lamps, Report& report) const {
-    if (lamps.answered.empty()) return;
-    report.rows.push_back(mean_row(row, "answered", "", lamps.answered, setting_->seed));
-    if (lamps.error_cm.empty()) return;
-    report.rows.push_back(mean_row(row, "mean error", "cm", lamps.error_cm, setting_->seed));
-    report.rows.push_back(mean_row(row, "stated sigma", "cm", lamps.sigma_cm, setting_->seed));
-    report.rows.push_back(mean_row(row, "within its 99 % bound", "", lamps.within_bound, setting_->seed));
-  }
-
   const Setting* setting_;
   config::Robot robot_;
-  std::array<ByLamp, kContenders> all_;
-  std::array<std::array<ByLamp, kRadii_m.size() - 1>, kContenders> of_radius_;
+  std::array<AnswersByLamp, kContenders> all_;
+  std::array<std::array<AnswersByLamp, kRadii_m.size() - 1>, kContenders> of_radius_;
   std::array<std::map<std::string, int>, kContenders> unanswered_;
 };
 
