@@ -16,7 +16,11 @@ class LumaView {
         stride_(image.stride_bytes),
         step_(bytes_per_pixel(image.format)),
         width_(image.width_px),
-        height_(image.height_px) {}
+        height_(image.height_px),
+        black_(image.format == PixelFormat::kYuyv ? 16.0F : 0.0F) {}
+
+  /// The level of no light at all.
+  [[nodiscard]] float black() const { return black_; }
 
   /// Are all four neighbours of (x, y) inside, with so many pixels to spare?
   [[nodiscard]] bool holds(double x, double y, double margin_px = 0.0) const {
@@ -47,6 +51,7 @@ class LumaView {
   int step_;
   int width_;
   int height_;
+  float black_;
 };
 
 }  // namespace cgsr::illumination

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "pipeline/illumination/board.h"
-#include "pipeline/illumination/lane_sums.h"
 
 namespace cgsr::illumination {
 namespace {
@@ -12,6 +11,9 @@ namespace {
 // Residuals beyond it count less and less: grey levels, and of the contrast.
 constexpr float kLeastScale = 3.0F;
 constexpr float kScale = 0.12F;
+
+constexpr float kLeastContrast = 0.01F;
+constexpr float kMostContrast = 0.98F;
 
 }  // namespace
 
@@ -38,6 +40,16 @@ ShadowBrightness::ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& e
   slope_y_ = static_cast<float>(x[kSlopeY]);
   blur_ = static_cast<float>(edges.blur_m);
   penumbra_ = static_cast<float>(x[kSoftness]);
+  const auto lit = static_cast<float>(std::max(1.0, x[kLevel] - edges.black));
+  contrast_ = std::clamp(dark_ / lit, kLeastContrast, kMostContrast);
+  in_shadow_ = (1.0F - contrast_) * (1.0F - contrast_);
+}
+
+/// Where half of the lamp is hidden, a deep shadow has not lost half of its contrast yet.
+void ShadowBrightness::code(const Lane& hidden, Lane& coded, Lane& slope) const {
+  const Lane level = (1.0F - hidden * (1.0F - in_shadow_)).sqrt();
+  coded = (1.0F - level) * (1.0F / contrast_);
+  slope = (0.5F * (1.0F - in_shadow_) / contrast_) / level;
 }
 
 ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) const {
@@ -49,7 +61,10 @@ ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) c
     const float soft = penumbra_ * std::clamp(qx * line.along_x + qy * line.along_y, 0.0F, 1.0F);
     hidden += step_->at(d / std::sqrt(soft * soft + blur_ * blur_)).share;
   }
-  return {level_ + slope_x_ * from_foot.x() + slope_y_ * from_foot.y(), std::max(0.0F, hidden)};
+  Lane coded;
+  Lane slope;
+  code(Lane::Constant(std::max(0.0F, hidden)), coded, slope);
+  return {level_ + slope_x_ * from_foot.x() + slope_y_ * from_foot.y(), coded[0]};
 }
 
 ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
@@ -83,10 +98,11 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
       J_softness -= J_d * d * soft * way * over_sigma * over_sigma;
     }
     const auto lit = hidden <= 0.0F;
-    hidden = lit.select(0.0F, hidden);
+    Lane slope;
+    code(lit.select(0.0F, hidden), hidden, slope);
     for (std::size_t side = 0; side < 2; ++side) {
-      J_tip[side] = lit.select(0.0F, J_tip[side]);
-      J_foot[side] = lit.select(0.0F, J_foot[side]);
+      J_tip[side] = lit.select(0.0F, J_tip[side] * slope);
+      J_foot[side] = lit.select(0.0F, J_foot[side] * slope);
     }
     j[kTipX] = -J_tip[0] * line_[0].inward_x - J_tip[1] * line_[1].inward_x;
     j[kTipY] = -J_tip[0] * line_[0].inward_y - J_tip[1] * line_[1].inward_y;
@@ -94,7 +110,7 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     j[kFootY] = -J_foot[0] * line_[0].inward_y - J_foot[1] * line_[1].inward_y;
     j[kRadius] = J_foot[0] + J_foot[1];
     j[kDark] = -hidden;
-    j[kSoftness] = lit.select(0.0F, J_softness);
+    j[kSoftness] = lit.select(0.0F, J_softness * slope);
     j[kSlopeX] = x;
     j[kSlopeY] = y;
     const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * hidden);

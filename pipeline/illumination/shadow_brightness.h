@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "pipeline/illumination/lane_sums.h"
 #include "pipeline/illumination/soft_step.h"
 
 namespace cgsr::illumination {
@@ -36,6 +37,7 @@ struct ShadowSamples {
 struct ShadowEdges {
   Eigen::Vector2d foot = Eigen::Vector2d::Zero();  ///< as measured: what the samples count from.
   double blur_m = 0.0005;                          ///< of the image, on the board: a standard deviation.
+  double black = 0.0;                              ///< the level of no light at all.
 };
 
 /// The normal equations of Gauss and Newton, robust weights counted.
@@ -47,7 +49,8 @@ struct ShadowSums {
 };
 
 /// The brightness of the board about a probe, with the shadow that ten unknowns describe: both lines are tangents from the shadow of the tip
-/// to the base, and the brightness between them is less by the contrast. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
+/// to the base, and the brightness between them is less by the contrast. A camera codes light about as its square root (sRGB, BT.601), and levels are compared
+/// as it coded them. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
 class ShadowBrightness {
  public:
   /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about
@@ -64,8 +67,9 @@ class ShadowBrightness {
   [[nodiscard]] ShadowSums sum_up(const ShadowSamples& samples) const;
 
   struct Value {
-    float plain;   ///< without the shadow.
-    float hidden;  ///< how much of the lamp is, 0..1.
+    float plain;  ///< without the shadow.
+    float
+        hidden;  ///< of the contrast that all of the shadow has, 0..1: the share of the lamp that is hidden, as the camera codes it.
   };
   [[nodiscard]] Value at(const Eigen::Vector2f& from_foot) const;
 
@@ -76,8 +80,12 @@ class ShadowBrightness {
     float along_x = 0.0F, along_y = 0.0F;  // over its length
   };
 
+  void code(const Lane& hidden, Lane& coded, Lane& slope) const;
+
   const SoftStep* step_;
   std::array<Line, 2> line_{};
+  float in_shadow_ = 0.0F;             ///< of the light beside the shadow, what is left in it.
+  float contrast_ = 0.0F;              ///< of the level beside it, above black.
   float off_x_ = 0.0F, off_y_ = 0.0F;  // of the foot from where it was measured
   float radius_ = 0.0F;
   float dark_ = 0.0F;

@@ -56,7 +56,9 @@ struct DrawnImage {
 struct Drawing {
   std::vector<Eigen::Vector3d> lamps_B;  ///< point lamps, board's frame.
   double board_level = 140.0;
-  double shadow_level = 30.0;  ///< how much darker.
+  double shadow_level = 30.0;  ///< how much darker, where all of a lamp is hidden.
+  int lamp_parts =
+      1;  ///< so many of lamps_B are one lamp: each takes its share of the light, which the camera codes by its square root.
   double cone_level = 90.0;
   double room_level = 60.0;
   double noise = 1.0;

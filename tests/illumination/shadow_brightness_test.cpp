@@ -19,7 +19,8 @@ const ShadowEdges kEdges{{0.01, -0.2}, 0.0006};
 
 struct Plain {
   double value;
-  ShadowUnknowns by;  ///< its derivative; how an edge's softness changes with its place is left out.
+  ShadowUnknowns
+      by;  ///< its derivative; how an edge's softness changes with its place, and the coding with the contrast, is left out.
 };
 
 /// The model as it is written down: a place at a time, and with the integral itself instead of a table.
@@ -44,9 +45,14 @@ Plain plain_at(const ShadowUnknowns& x, const Vector2d& from_foot) {
     by_edge[U::kSoftness] -= density * d * x[U::kSoftness] * way * way / sigma;
   }
   hidden = std::max(0.0, hidden);
-  Plain plain{x[U::kLevel] + x.segment<2>(U::kSlopeX).dot(from_foot) - x[U::kDark] * hidden, ShadowUnknowns::Zero()};
-  if (hidden > 0.0) plain.by = -x[U::kDark] * by_edge;
-  plain.by[U::kDark] = -hidden;
+  // The light that is left, as a camera codes it: by its square root.
+  const double contrast = x[U::kDark] / x[U::kLevel];
+  const double left = 1.0 - hidden * (1.0 - (1.0 - contrast) * (1.0 - contrast));
+  const double coded = (1.0 - std::sqrt(left)) / contrast;
+  const double slope = (1.0 - (1.0 - contrast) * (1.0 - contrast)) / (2.0 * contrast * std::sqrt(left));
+  Plain plain{x[U::kLevel] + x.segment<2>(U::kSlopeX).dot(from_foot) - x[U::kDark] * coded, ShadowUnknowns::Zero()};
+  if (hidden > 0.0) plain.by = -x[U::kDark] * slope * by_edge;
+  plain.by[U::kDark] = -coded;
   plain.by[U::kLevel] = 1.0;
   plain.by.segment<2>(U::kSlopeX) = from_foot;
   return plain;

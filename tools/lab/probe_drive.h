@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/geometry/pose.h"
@@ -29,6 +30,9 @@ enum class DriveErrors : std::uint8_t {
   kThatLast,  ///< of the map and of what is matched: they fade over the way and over the turn (a Gauss-Markov sequence).
 };
 inline constexpr std::size_t kDriveErrors = 2;
+constexpr std::string_view to_string(DriveErrors errors) {
+  return errors == DriveErrors::kThatLast ? "pose errors that last" : "pose errors of each image";
+}
 
 /// The estimated pose of a robot, from image to image.
 class EstimatedPose {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -28,7 +27,6 @@ constexpr std::uint64_t kHomes = 0x51;  // stream of random numbers
 constexpr int kPerHome = 8;
 constexpr double kHeightSigma_m = 0.02;
 constexpr double kFound_cm = 4.0;  // off at most, at the end of locating
-constexpr std::array<std::string_view, kDriveErrors> kDriveRows{"drive, pose errors of each image", "drive"};
 
 /// Where the robot has the lamp at the end of a drive, over the homes.
 struct DriveEnds {
@@ -87,7 +85,8 @@ class HomeTrials {
     by_night_.add_rows("one image, no daylight", setting_->seed, report);
     by_day_.add_rows("one image, daylight", setting_->seed, report);
     for (std::size_t kind = kDriveErrors; kind-- > 0;) {
-      drives_[kind].add_rows(std::string(kDriveRows[kind]), homes_, setting_->seed, report);
+      drives_[kind].add_rows(fmt::format("drive, {}", to_string(static_cast<DriveErrors>(kind))), homes_,
+                             setting_->seed, report);
     }
     for (const auto& [why, count] : unanswered_) {
       report.notes.push_back(fmt::format("{} images not answered: {}.", count, why));
