@@ -7,20 +7,31 @@
 
 namespace cgsr::illumination {
 
+/// Which levels of an image mean light.
+struct LightLevels {
+  double black =
+      0.0;  ///< the level of no light at all; below 0 in a difference of two images, of which neither is dark.
+  double saturated = 255.0;  ///< from this level on the image holds no more light.
+};
+
+constexpr LightLevels light_levels_of(PixelFormat format) {
+  return format == PixelFormat::kYuyv ? LightLevels{16.0, 233.5} : LightLevels{0.0, 253.5};
+}
+
 /// The brightness of an image as it lies there, YUYV or grey, read between pixels: no grey copy is made for the few places that are looked at.
 /// In place of Alg. 5.1, line 2.
 class LumaView {
  public:
-  explicit LumaView(const ImageView& image)
+  explicit LumaView(const ImageView& image) : LumaView(image, light_levels_of(image.format)) {}
+  LumaView(const ImageView& image, const LightLevels& levels)
       : data_(image.data),
         stride_(image.stride_bytes),
         step_(bytes_per_pixel(image.format)),
         width_(image.width_px),
         height_(image.height_px),
-        black_(image.format == PixelFormat::kYuyv ? 16.0F : 0.0F) {}
+        levels_(levels) {}
 
-  /// The level of no light at all.
-  [[nodiscard]] float black() const { return black_; }
+  [[nodiscard]] const LightLevels& levels() const { return levels_; }
 
   /// Are all four neighbours of (x, y) inside, with so many pixels to spare?
   [[nodiscard]] bool holds(double x, double y, double margin_px = 0.0) const {
@@ -51,7 +62,7 @@ class LumaView {
   int step_;
   int width_;
   int height_;
-  float black_;
+  LightLevels levels_;
 };
 
 }  // namespace cgsr::illumination

@@ -3,11 +3,11 @@
 namespace cgsr::illumination {
 namespace {
 
-constexpr int kAlong = 8;  // of these, where the board's edges are lost in the light
+constexpr int kAlong = 8;  // places on the board, where its edges are lost in the light
 constexpr int kAcross = 16;
 
 /// \return the share of the board's places, seen from where the mount says, that are as bright as the camera can tell.
-double share_saturated(const Board& board, const LumaView& luma, double brightest) {
+double share_saturated(const Board& board, const LumaView& luma) {
   const BoardView view(board.camera, board.X_BC);
   int places = 0;
   int saturated = 0;
@@ -17,7 +17,7 @@ double share_saturated(const Board& board, const LumaView& luma, double brightes
           view.pixel({((i + 0.5) / kAlong - 0.5) * board.depth_m, ((k + 0.5) / kAcross - 0.5) * board.width_m, 0.0});
       if (!pixel.in_front || !luma.holds(pixel.at.x(), pixel.at.y())) continue;
       ++places;
-      saturated += luma.at(pixel.at.x(), pixel.at.y()) >= brightest ? 1 : 0;
+      saturated += luma.at(pixel.at.x(), pixel.at.y()) >= luma.levels().saturated ? 1 : 0;
     }
   }
   return places == 0 ? 0.0 : static_cast<double>(saturated) / places;
@@ -66,10 +66,9 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
     observation.registration = register_board(board_, parameters_.registration, luma, last_X_BC_, false);
   }
   has_last_ = observation.registration.good;
-  const double brightest = image.format == PixelFormat::kYuyv ? 233.5 : 253.5;
   if (!observation.registration.good) {
-    observation.status = share_saturated(board_, luma, brightest) > kMostSaturated ? ObservationStatus::kSaturated
-                                                                                   : ObservationStatus::kNotRegistered;
+    observation.status = share_saturated(board_, luma) > kMostSaturated ? ObservationStatus::kSaturated
+                                                                        : ObservationStatus::kNotRegistered;
     return observation;
   }
   last_X_BC_ = observation.registration.X_BC;
@@ -79,7 +78,7 @@ ProbeObservation ProbeObserver::observe(const ImageView& image) {
       observation.missing |= 1 << i;
       continue;
     }
-    observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC, brightest);
+    observation.probe[i] = finders_[i].find(luma, observation.registration.X_BC);
     shadows += observation.probe[i].count;
     if (finders_[i].is_saturated()) observation.saturated |= 1 << i;
   }

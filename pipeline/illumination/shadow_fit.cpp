@@ -62,7 +62,7 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
                        const Choice& choice) {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, choice.tip_shadow);
   samples_.count = 0;
-  edges_.black = static_cast<double>(image.black());
+  edges_.black = image.levels().black;
   if (!outline.valid) return;
   int place = 0;
   for (std::size_t side = 0; side < 2; ++side) {

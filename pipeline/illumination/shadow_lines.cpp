@@ -413,7 +413,7 @@ bool ShadowFinder::is_explained(const ProbeShadow& shadow) const {
   return shadow.rms * shadow.rms <= noise * noise + unlike * unlike;
 }
 
-ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Pose& X_BC, double saturation) {
+ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Pose& X_BC) {
   Found found;
   const BoardView view(board_.camera, X_BC);
   for (int i = 0; i < board_.probes; ++i) {
@@ -421,7 +421,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view.p_BC(), probe.p_BA));
   }
   look_around(image, view);
-  saturated_ = share_brighter_than(saturation);
+  saturated_ = share_brighter_than(image.levels().saturated);
   if (is_saturated()) return found;
   take_plane_away();
   noise_ = noise();

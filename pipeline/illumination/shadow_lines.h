@@ -31,9 +31,9 @@ class ShadowFinder {
     int count = 0;
   };
   /// \param X_BC  the camera against the board, registered in this image.
-  /// \param saturation  the brightest level that the image can hold. Where more than kMostSaturated of the board about the probe is as bright, the edges
-  ///        of its shadow are not where the light is half hidden, but where the image begins to hold it: none is looked for.
-  Found find(const LumaView& image, const geometry::Pose& X_BC, double saturation);
+  /// Where more than kMostSaturated of the board about the probe is saturated, the edges of its shadow are not where the light is half hidden, but
+  /// where the image begins to hold it: none is looked for.
+  Found find(const LumaView& image, const geometry::Pose& X_BC);
 
   /// Compares every wedge with every ray, which costs five times as much: what the quick search is judged by.
   void search_everywhere() { everywhere_ = true; }

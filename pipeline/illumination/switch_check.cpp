@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -67,7 +68,11 @@ bool SwitchChecker::has_moved(const Registration& registration, const ImageView&
   return step.head<3>().norm() > kMaxMotion_m || step.tail<3>().norm() > kMaxRotation_rad;
 }
 
-LumaView SwitchChecker::subtract(const ImageView& on, const ImageView& off) {
+// What is left of the light in the difference's shadows has the level 0 there.
+LumaView SwitchChecker::subtract(const ImageView& on, const ImageView& off, const geometry::Pose& X_BC) {
+  const LumaView without(off);
+  const LightLevels levels{.black = without.levels().black - mean_on_board(without, X_BC),
+                           .saturated = std::numeric_limits<double>::infinity()};
   const int pixel_bytes = bytes_per_pixel(on.format);
   const int width = on.width_px;
   for (int y = 0; y < on.height_px; ++y) {
@@ -77,11 +82,11 @@ LumaView SwitchChecker::subtract(const ImageView& on, const ImageView& off) {
     for (int x = 0; x < width; ++x)
       out[x] = static_cast<std::uint8_t>(std::max(0, int{a[pixel_bytes * x]} - int{b[pixel_bytes * x]}));
   }
-  return LumaView(ImageView{difference_.data(), width, on.height_px, width, PixelFormat::kGrey8});
+  return {ImageView{difference_.data(), width, on.height_px, width, PixelFormat::kGrey8}, levels};
 }
 
-// The mean of the difference over the board, grey levels.
-double SwitchChecker::mean_on_board(const LumaView& difference, const geometry::Pose& X_BC) const {
+// Grey levels.
+double SwitchChecker::mean_on_board(const LumaView& image, const geometry::Pose& X_BC) const {
   const BoardView view(board_.camera, X_BC);
   double sum = 0.0;
   int places = 0;
@@ -90,8 +95,8 @@ double SwitchChecker::mean_on_board(const LumaView& difference, const geometry::
       const Eigen::Vector3d p_B(((i + 0.5) / kAlong - 0.5) * board_.depth_m,
                                 ((k + 0.5) / kAcross - 0.5) * board_.width_m, 0.0);
       const auto pixel = view.pixel(p_B);
-      if (!pixel.in_front || !difference.holds(pixel.at.x(), pixel.at.y())) continue;
-      sum += static_cast<double>(difference.at(pixel.at.x(), pixel.at.y()));
+      if (!pixel.in_front || !image.holds(pixel.at.x(), pixel.at.y())) continue;
+      sum += static_cast<double>(image.at(pixel.at.x(), pixel.at.y()));
       ++places;
     }
   }
@@ -135,7 +140,7 @@ SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, cons
     check.verdict = SwitchVerdict::kMoved;
     return check;
   }
-  const LumaView difference = subtract(on, off);
+  const LumaView difference = subtract(on, off, registration.X_BC);
   check.difference = mean_on_board(difference, registration.X_BC);
   if (check.difference < kMinDifference) {
     check.verdict = SwitchVerdict::kNoDifference;
@@ -146,7 +151,7 @@ SwitchCheck SwitchChecker::check(const ImageView& on, const ImageView& off, cons
   bool all_agree = true;
   for (std::size_t i = 0; i < finders_.size(); ++i) {
     if ((registration.cones & (1 << i)) == 0 || lamp.p_BL.z() < board_.probe[i].p_BA.z() + kMinAboveTip_m) continue;
-    const auto found = finders_[i].find(difference, registration.X_BC, 256.0);
+    const auto found = finders_[i].find(difference, registration.X_BC);
     compare_shadow(i, found, lamp, registration.covariance, check);
     if (!check.seen[i]) continue;
     any = true;

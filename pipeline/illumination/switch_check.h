@@ -56,8 +56,8 @@ class SwitchChecker {
 
   [[nodiscard]] bool can_compare(const ImageView& on, const ImageView& off) const;
   [[nodiscard]] bool has_moved(const Registration& registration, const ImageView& off) const;
-  LumaView subtract(const ImageView& on, const ImageView& off);
-  [[nodiscard]] double mean_on_board(const LumaView& difference, const geometry::Pose& X_BC) const;
+  LumaView subtract(const ImageView& on, const ImageView& off, const geometry::Pose& X_BC);
+  [[nodiscard]] double mean_on_board(const LumaView& image, const geometry::Pose& X_BC) const;
   void compare_shadow(std::size_t probe, const ShadowFinder::Found& found, const Lamp& lamp,
                       const geometry::Matrix6d& registration, SwitchCheck& check) const;
 

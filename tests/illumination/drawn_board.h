@@ -68,6 +68,18 @@ struct Drawing {
   std::function<double(const Eigen::Vector2d&)> darker = [](const Eigen::Vector2d&) { return 0.0; };
 };
 
+/// A lamp that is a ball: a disc of points.
+inline void shine_from_ball(const Eigen::Vector3d& p_BL, double shadow_level, Drawing& drawing, double radius_m = 0.05,
+                            int parts = 9) {
+  drawing.shadow_level = shadow_level;
+  drawing.lamp_parts = parts;
+  for (int i = 0; i < parts; ++i) {
+    const double radius = radius_m * std::sqrt((i + 0.5) / parts);
+    const double angle = 2.4 * i;
+    drawing.lamps_B.emplace_back(p_BL + radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0));
+  }
+}
+
 /// Draws by casting nine rays a pixel: plain, and without the pipeline's projection. Threads: one at a time, it keeps the camera's rays.
 DrawnImage draw(const Board& board, const geometry::Pose& X_BC, const Drawing& drawing);
 

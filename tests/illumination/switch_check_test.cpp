@@ -38,6 +38,30 @@ TEST(SwitchCheck, AKnownLampsShadowsFallWhereTheProbesAre) {
   EXPECT_GT(check.difference, 30.0);
 }
 
+// How a camera codes the edge of a soft shadow hangs on the light beside the lamp, which the difference no longer shows.
+TEST(SwitchCheck, ASoftLampInALitRoomThrowsItsShadowsWhereItShould) {
+  const Board board = shipped_board();
+  const Vector3d lamp_B = lamp_at(35.0, 60.0);
+  SwitchChecker checker(board, shipped_probes(), kLampHeight_m);
+  for (const double off_level : {20.0, 150.0}) {
+    Drawing off;
+    off.board_level = off_level;
+    off.cone_level = 0.6 * off_level;
+    Drawing on = off;
+    on.board_level = 190.0;
+    on.cone_level = 120.0;
+    on.seed = 5;
+    shine_from_ball(lamp_B, on.board_level - off.board_level, on, 0.12, 21);
+    const auto check = checker.check(draw(board, board.X_BC, on).view(), draw(board, board.X_BC, off).view(),
+                                     board.X_RB * lamp_B, 0.01);
+    EXPECT_EQ(check.verdict, SwitchVerdict::kAgrees) << off_level << ' ' << to_string(check.verdict);
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (!check.seen[i]) continue;
+      EXPECT_LT(check.off_m[i].norm(), 0.0015) << off_level << ' ' << i;
+    }
+  }
+}
+
 TEST(SwitchCheck, AProbeThatWasBentIsNoticed) {
   const Board board = shipped_board();
   Board bent = board;

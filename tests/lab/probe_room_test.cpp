@@ -15,13 +15,18 @@ namespace {
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 TEST(ProbeRoom, OfADrawnHomeHasOneOfItsLampsOn) {
-  const auto home = sim::generate_home(7);
+  const auto home = sim::generate_home(660);
   ASSERT_TRUE(home) << home.error().message;
-  const std::size_t last = home->lights.lamps.size() - 1;
+  ASSERT_EQ(home->lights.lamps.size(), 2U);
+  const std::size_t last = 1;
   const auto room = ProbeRoom::make(*home, last);
   ASSERT_TRUE(room) << room.error().message;
   const auto& position_m = home->world.lamp[last].position_m;
   EXPECT_EQ((*room)->p_WL(), Eigen::Vector3d(position_m[0], position_m[1], position_m[2]));
+  Random random(3);
+  const auto below = (*room)->lit_standpoint(20.0 * kDeg, 60.0 * kDeg, random);
+  ASSERT_TRUE(below);
+  EXPECT_TRUE(std::ranges::none_of((*room)->truth(*below, 1), &sim::ProbeShadow::visible)) << "the other one is off";
 }
 
 TEST(ProbeRoom, HasNoFreePlaceInFurnitureWallsOrOutside) {
@@ -35,6 +40,8 @@ TEST(ProbeRoom, HasNoFreePlaceInFurnitureWallsOrOutside) {
   EXPECT_TRUE(std::ranges::any_of(truth, &sim::ProbeShadow::visible));
   EXPECT_FALSE((*room)->is_free(sim::pose_at({0.0, 3.0, 0.0}, 0.0))) << "in a wall";
   EXPECT_FALSE((*room)->is_free(sim::pose_at({0.3, 3.0, 0.0}, 0.0))) << "beside it";
+  EXPECT_FALSE((*room)->is_free(sim::pose_at({7.15, 3.2, 0.0}, 0.0))) << "in the table";
+  EXPECT_FALSE((*room)->is_free(sim::pose_at({7.15 - 0.44 - 0.4 - 0.2, 3.2, 0.0}, 0.0))) << "its board over the table";
   EXPECT_FALSE((*room)->is_free(sim::pose_at({-20.0, 3.0, 0.0}, 0.0))) << "without a floor";
 }
 

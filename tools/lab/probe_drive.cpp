@@ -26,14 +26,12 @@ double angle_at(const ProbeRoom& room, const sim::Pose& X_WR) {
 
 }  // namespace
 
-std::vector<sim::Pose> drive_below_lamp(ProbeRoom& room, Random& random) {
+std::vector<sim::Pose> drive_below_lamp(ProbeRoom& room, const sim::Pose& start, Random& random) {
   constexpr double kMaxAngle_deg = 60.0;
   constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   std::vector<sim::Pose> way;
-  const auto start = room.lit_standpoint(15.0 * kRadPerDeg, 50.0 * kRadPerDeg, random);
-  if (!start) return way;
   way.reserve(kDriveImages);
-  sim::Pose X_WR = *start;
+  sim::Pose X_WR = start;
   for (int image = 0; image < kDriveImages; ++image) {
     way.push_back(X_WR);
     for (int attempt = 0; attempt < 60; ++attempt) {
@@ -67,7 +65,8 @@ stages::PlacedRobot EstimatedPose::at(const sim::Pose& X_WR) {
 }
 
 Result<std::array<stages::LampReport, kDriveErrors>> locate_while_driving(
-    ProbeRoom& room, const config::Robot& robot, const illumination::LampParameters& lamp, Random random,
+    ProbeRoom& room, const config::Robot& robot, const illumination::LampParameters& lamp, const sim::Pose& start,
+    Random random,
     const std::function<void(std::size_t image, const std::array<stages::LampReport, kDriveErrors>& known)>&
         after_image) {
   const auto copy = static_cast<std::uint32_t>(random.next());
@@ -81,7 +80,7 @@ Result<std::array<stages::LampReport, kDriveErrors>> locate_while_driving(
     if (!made) return tl::unexpected(made.error());
     stage.push_back(std::move(*made));
   }
-  const auto way = drive_below_lamp(room, random);
+  const auto way = drive_below_lamp(room, start, random);
   std::array<stages::LampReport, kDriveErrors> report;
   for (std::size_t image = 0; image < way.size(); ++image) {
     const ImageView photo = room.shoot(way[image], seed, image);

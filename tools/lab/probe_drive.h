@@ -21,8 +21,8 @@ inline constexpr int kDriveImages = 40;
 
 /// A drive below the room's lamp: 6 cm from image to image, turned away where it is blocked or the light gets flatter than
 /// 60 degrees.
-/// \return the robot's poses; shorter where it can go nowhere, none where there is no standpoint to begin at.
-std::vector<sim::Pose> drive_below_lamp(ProbeRoom& room, Random& random);
+/// \return the robot's poses, `start` the first of them.
+std::vector<sim::Pose> drive_below_lamp(ProbeRoom& room, const sim::Pose& start, Random& random);
 
 /// How the pose errs that localization estimates: by 1 cm along x and along y and by 0.3 degrees, as it states.
 enum class DriveErrors : std::uint8_t {
@@ -50,9 +50,10 @@ class EstimatedPose {
 
 /// What the robot's stage (Alg. 5.1 and the filter over images) knows of the lamp during one drive, for each kind of DriveErrors: the same images.
 /// \param lamp  instead of the robot's section [lamp].  \param after_image  is told the number of each image and what is known then.
-/// \return what is known at the end; nothing is known where there was no drive.
+/// \return what is known at the end.
 Result<std::array<stages::LampReport, kDriveErrors>> locate_while_driving(
-    ProbeRoom& room, const config::Robot& robot, const illumination::LampParameters& lamp, Random random,
+    ProbeRoom& room, const config::Robot& robot, const illumination::LampParameters& lamp, const sim::Pose& start,
+    Random random,
     const std::function<void(std::size_t image, const std::array<stages::LampReport, kDriveErrors>& known)>&
         after_image);
 

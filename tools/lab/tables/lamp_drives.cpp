@@ -5,7 +5,6 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -28,7 +27,6 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLumens = 600.0;
 constexpr double kUnknownHeight_m = 3.0;
 constexpr int kMinAround = 3;  // standpoints of four that must show the lamp
-constexpr std::array<std::string_view, kDriveErrors> kRows{"drives", "drives, pose errors that last"};
 
 struct Drives {
   std::vector<double> error_cm, sigma_cm;
@@ -36,17 +34,20 @@ struct Drives {
   std::vector<std::vector<double>> by_image = std::vector<std::vector<double>>(kDriveImages);
 };
 
-Result<void> run_drive(ProbeRoom& room, const config::Robot& robot, const Random& random,
+Result<void> run_drive(ProbeRoom& room, const config::Robot& robot, Random random,
                        std::array<Drives, kDriveErrors>& drives) {
+  const auto start = room.standpoint(random.uniform(15.0, 50.0) * kRadPerDeg, random);
+  if (!start) return {};
   const auto off_cm = [&room](const stages::LampReport& report) {
     return 100.0 * (report.lamp.p_WL - room.p_WL()).norm();
   };
-  const auto known = locate_while_driving(
-      room, robot, robot.lamp, random, [&](std::size_t image, const std::array<stages::LampReport, kDriveErrors>& now) {
-        for (std::size_t kind = 0; kind < kDriveErrors; ++kind) {
-          if (now[kind].known) drives[kind].by_image[image].push_back(off_cm(now[kind]));
-        }
-      });
+  const auto known =
+      locate_while_driving(room, robot, robot.lamp, *start, random,
+                           [&](std::size_t image, const std::array<stages::LampReport, kDriveErrors>& now) {
+                             for (std::size_t kind = 0; kind < kDriveErrors; ++kind) {
+                               if (now[kind].known) drives[kind].by_image[image].push_back(off_cm(now[kind]));
+                             }
+                           });
   if (!known) return tl::unexpected(known.error());
   for (std::size_t kind = 0; kind < kDriveErrors; ++kind) {
     const stages::LampReport& report = (*known)[kind];
@@ -153,7 +154,10 @@ Result<Report> lamp_drives(const Setting& setting) {
   report.title = fmt::format("the lamp in the world's frame, {} drives of {} images", count, kDriveImages);
   Plot plot{"Error on the way", "image", "cm", {}};
   for (std::size_t kind = 0; kind < kDriveErrors; ++kind) {
-    plot.curves.push_back(add_rows(std::string(kRows[kind]), drives[kind], count, setting.seed, report));
+    const auto errors = static_cast<DriveErrors>(kind);
+    const std::string row =
+        errors == DriveErrors::kOfEachImage ? "drives" : fmt::format("drives, {}", to_string(errors));
+    plot.curves.push_back(add_rows(row, drives[kind], count, setting.seed, report));
   }
   report.plots.push_back(std::move(plot));
   add_rows(around, count, setting.seed, report);
@@ -161,8 +165,7 @@ Result<Report> lamp_drives(const Setting& setting) {
       "The stage probes with the robot's pose in each image. Drives of 6 cm between images within 60 degrees of the "
       "lamp; the robot's pose errs by 1 cm and 0.3 degrees, which the filter is told: anew in every image, or for as "
       "long as the localizer's does (1/e of it is left after 1.5 m or 2 rad). The vision's copy is drawn anew for each "
-      "drive "
-      "as in table-5.1.");
+      "drive as in table-5.1.");
   return report;
 }
 
