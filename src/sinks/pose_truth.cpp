@@ -1,5 +1,6 @@
 #include "src/sinks/pose_truth.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cgsr::sinks {
@@ -15,13 +16,24 @@ geometry::Pose true_camera(const hal::ImageTruth& truth) {
 
 }  // namespace
 
+double Streak::add(bool is_so, MonoTime stamp) {
+  if (is_so && !since_) since_ = stamp;
+  if (since_) longest_s_ = std::max(longest_s_, to_seconds(stamp - *since_));
+  if (!is_so) since_.reset();
+  return longest_s_;
+}
+
 std::optional<PoseError> PoseTruth::add(const hal::ImageTruth& truth, const stages::PoseEstimate& pose,
                                         const hal::Odometry& odometry) {
   if (!pose.has_map) return std::nullopt;
   if (statistics_.images == 0 && !pose.camera.correction.corrected) return std::nullopt;
+  if (statistics_.images == 0) statistics_.first_s = to_seconds(truth.stamp.time_since_epoch());
   follow_odometry(truth.robot, odometry);
+  const bool lost = pose.camera.state == localization::TrackState::kLost;
+  statistics_.longest_lost_s = lost_.add(lost || pose.seeks_pose(), truth.stamp);
   if (pose.seeks_pose()) {
     ++statistics_.searching;
+    statistics_.longest_wrong_s = wrong_.add(false, truth.stamp);
     return std::nullopt;
   }
   const geometry::Vector6d error = geometry::step_between(true_camera(truth), pose.camera.X_WC);
@@ -35,7 +47,10 @@ std::optional<PoseError> PoseTruth::add(const hal::ImageTruth& truth, const stag
     statistics_.worst_s = to_seconds(truth.stamp.time_since_epoch());
   }
   statistics_.worst_rad = std::max(statistics_.worst_rad, off.direction_rad);
-  const bool lost = pose.camera.state == localization::TrackState::kLost;
+  const bool accurate = off.position_m < kAccurate_m && off.direction_rad < kAccurate_rad;
+  statistics_.accurate += accurate ? 1 : 0;
+  const bool claims = !lost && pose.camera.state != localization::TrackState::kUnsure;
+  statistics_.longest_wrong_s = wrong_.add(claims && !accurate, truth.stamp);
   statistics_.lost += lost && state_ != localization::TrackState::kLost ? 1 : 0;
   state_ = pose.camera.state;
   return off;

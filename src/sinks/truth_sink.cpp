@@ -64,6 +64,10 @@ void add_pose(const PoseTruthStatistics& pose, Summary& summary) {
                           {"worst_at_s", pose.worst_s},
                           {"mean_deg", kDegrees * pose.mean_rad},
                           {"worst_deg", kDegrees * pose.worst_rad},
+                          {"accurate_share", share(pose.accurate, pose.images)},
+                          {"first_at_s", pose.first_s},
+                          {"longest_lost_s", pose.longest_lost_s},
+                          {"longest_wrong_s", pose.longest_wrong_s},
                           {"way_m", pose.way_m},
                           {"odometry_ends_off_cm", 100.0 * pose.odometry_ends_off_m},
                           {"odometry_worst_cm", 100.0 * pose.odometry_worst_m}};
@@ -71,10 +75,13 @@ void add_pose(const PoseTruthStatistics& pose, Summary& summary) {
       "pose by truth, from the first correction on: {} images, corrected in {:.1f} %, lost {} times, the whole map "
       "searched in {} images more; error {:.1f} cm and {:.2f} deg in the mean, {:.1f} cm (at {:.1f} s) and {:.2f} deg "
       "at worst\n"
+      "under {:.0f} cm and {:.1f} deg in {:.1f} %; lost for at most {:.1f} s on end, farther off without saying so for "
+      "at most {:.1f} s\n"
       "{:.1f} m driven; odometry alone would have been {:.0f} cm off at worst, {:.0f} cm at the end\n\n",
       pose.images, 100.0 * share(pose.corrected, pose.images), pose.lost, pose.searching, 100.0 * pose.mean_m,
-      kDegrees * pose.mean_rad, 100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, pose.way_m,
-      100.0 * pose.odometry_worst_m, 100.0 * pose.odometry_ends_off_m);
+      kDegrees * pose.mean_rad, 100.0 * pose.worst_m, pose.worst_s, kDegrees * pose.worst_rad, 100.0 * kAccurate_m,
+      kDegrees * kAccurate_rad, 100.0 * share(pose.accurate, pose.images), pose.longest_lost_s, pose.longest_wrong_s,
+      pose.way_m, 100.0 * pose.odometry_worst_m, 100.0 * pose.odometry_ends_off_m);
 }
 
 }  // namespace

@@ -69,6 +69,40 @@ TEST(PoseTruth, CountsASearchOfTheWholeMapByItself) {
   EXPECT_EQ(tally.statistics().worst_m, 0.0);
 }
 
+TEST(PoseTruth, TellsForHowLongItWasLostOrWrongOnEnd) {
+  PoseTruth tally;
+  const hal::Odometry odometry;
+  const auto add = [&](double at_s, const stages::PoseEstimate& pose) {
+    hal::ImageTruth truth;
+    truth.stamp = MonoTime{seconds(at_s)};
+    tally.add(truth, pose, odometry);
+  };
+  const stages::PoseEstimate right = corrected_at(geometry::pose_on_floor(0.02, 0.0, 0.0));
+  const stages::PoseEstimate off = corrected_at(geometry::pose_on_floor(0.06, 0.0, 0.0));
+  const stages::PoseEstimate turned = corrected_at(geometry::pose_on_floor(0.0, 0.0, 0.03));
+  stages::PoseEstimate lost = off;
+  lost.camera.state = localization::TrackState::kLost;
+  stages::PoseEstimate seeks = lost;
+  seeks.search = global_localization::Phase::kTurning;
+  add(1.0, right);
+  add(1.1, off);
+  add(1.2, right);
+  EXPECT_NEAR(tally.statistics().longest_wrong_s, 0.1, 1e-9);
+  add(2.0, off);
+  add(2.3, turned);
+  add(2.4, lost);
+  EXPECT_NEAR(tally.statistics().longest_wrong_s, 0.4, 1e-9) << "being lost is no claim";
+  add(3.0, seeks);
+  add(3.5, right);
+  EXPECT_NEAR(tally.statistics().longest_lost_s, 1.1, 1e-9) << "a search is part of it";
+  add(4.0, lost);
+  add(4.2, right);
+  EXPECT_NEAR(tally.statistics().longest_lost_s, 1.1, 1e-9);
+  EXPECT_NEAR(tally.statistics().first_s, 1.0, 1e-9);
+  EXPECT_EQ(tally.statistics().images, 9U);
+  EXPECT_EQ(tally.statistics().accurate, 4U);
+}
+
 hal::Odometry report(double time_s, double x_m, double heading_rad) {
   hal::Odometry odometry;
   odometry.stamp = MonoTime{seconds(time_s)};

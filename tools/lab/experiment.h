@@ -73,6 +73,7 @@ Result<Report> real_localization(const Setting& setting);
 Result<Report> section_4_3_3(const Setting& setting);
 Result<Report> false_corrections(const Setting& setting);
 Result<Report> home_round(const Setting& setting);
+Result<Report> homes_round(const Setting& setting);
 Result<Report> map_refine(const Setting& setting);
 Result<Report> closed_loop(const Setting& setting);
 Result<Report> figure_6_8(const Setting& setting);

@@ -51,14 +51,14 @@ FloorRect seen_from_start(const GeneratedHome& home) {
 
 }  // namespace
 
-std::string scenario_as_toml(const GeneratedHome& home) {
+std::string scenario_as_toml(const GeneratedHome& home, std::optional<double> ends_at_s) {
   const double takes = home.route.length_m / kForward_mps + kAtPlace_s * static_cast<double>(home.route.places.size());
   std::string text = fmt::format(
       "# A round through all {} rooms of home {}, {:.1f} m, on wheels that slip.\n"
       "world = \"world.toml\"\nrobot = \"robot\"\nends_at_s = {:.1f}\n\n[base]\nslip = 0.05\n\n"
       "[[line]]\nname = \"arming\"\ninput = true\n\n[[line_event]]\nwhat = \"pressed\"\nline = \"arming\"\nfrom_s = "
       "1.5\n",
-      home.plan.rooms.size(), home.seed, home.route.length_m, std::ceil(kBefore_s + takes));
+      home.plan.rooms.size(), home.seed, home.route.length_m, ends_at_s.value_or(std::ceil(kBefore_s + takes)));
   for (const LampSpec& lamp : home.world.lamp) {
     if (lamp.switch_name.empty()) continue;
     text += fmt::format("\n[[line]]\nname = \"{0}\"\n\n[[wall_switch]]\nlamp_line = \"{0}\"\n", lamp.switch_name);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "hal/sim/calibration/calibrated_copy.h"
@@ -10,8 +11,9 @@
 
 namespace cgsr::sim {
 
-/// \return the round through the home as a scenario file says it: all lamps on, wheels that slip, a time that the route takes.
-std::string scenario_as_toml(const GeneratedHome& home);
+/// \return the round through the home as a scenario file says it: all lamps on, wheels that slip.
+/// \param ends_at_s  nothing: the time that the route takes.
+std::string scenario_as_toml(const GeneratedHome& home, std::optional<double> ends_at_s = {});
 
 /// \return what a robot's file for the round says beside the shipped one that it extends.
 /// \param extends  the shipped robot's file, as the path that is written down.
