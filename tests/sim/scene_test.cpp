@@ -33,7 +33,7 @@ TEST(PortableMathProperty, AgreesWithTheLibrary) {
   EXPECT_EQ(srgb_encode(2), 1.0);
 }
 
-TEST(WatchRobot, TurnsWhoWatchesAndNobodyElse) {
+TEST(HeedRobot, TurnsWhoWatchesAndNobodyElse) {
   Scene scene;
   for (const bool watches : {true, false}) {
     Figure figure;
@@ -43,7 +43,7 @@ TEST(WatchRobot, TurnsWhoWatchesAndNobodyElse) {
     scene.figures.push_back(figure);
   }
   SceneState state = state_at(scene, 1.0);
-  watch_robot(scene, pose_at({2.0, -3.0, 0.0}), state);
+  heed_robot(scene, pose_at({2.0, -3.0, 0.0}), state);
   const auto heading_of = [&](std::size_t figure) {
     const Eigen::Vector3d forward = state.X_WJ[figure][0].linear().col(0);
     return arc_tangent(forward.y(), forward.x());
@@ -51,6 +51,30 @@ TEST(WatchRobot, TurnsWhoWatchesAndNobodyElse) {
   EXPECT_NEAR(heading_of(0), degrees(-90), 1e-12);
   EXPECT_NEAR(heading_of(1), degrees(30), 1e-12);
   EXPECT_NEAR((state.X_WJ[0][0].translation() - Eigen::Vector3d(2.0, 1.0, 0.0)).norm(), 0.0, 1e-12);
+}
+
+// It comes towards the robot, on its way or half a metre beside it: it passes at the distance that it keeps, without a jump.
+TEST(HeedRobot, WhoMakesWayPassesAtADistance) {
+  for (const double beside_m : {-0.5, 0.0, 0.02, 0.5}) {
+    Scene scene;
+    Figure figure;
+    figure.kind = FigureKind::kPerson;
+    figure.path = *Path::make({{{3.0, beside_m, 0.0}, 1.0}, {{-3.0, beside_m, 0.0}, 1.0}}, 0.0, 10.0, false);
+    figure.makes_way_m = 0.8;
+    scene.figures.push_back(figure);
+    Eigen::Vector3d last(3.0, beside_m, 0.0);
+    double nearest_m = 9.0;
+    for (double time_s = 0.0; time_s <= 6.0; time_s += 0.01) {
+      SceneState state = state_at(scene, time_s);
+      heed_robot(scene, pose_at({0.0, 0.0, 0.0}), state);
+      const Eigen::Vector3d p_W = state.X_WJ[0][0].translation();
+      EXPECT_LT((p_W - last).norm(), 0.15) << beside_m << ' ' << time_s;
+      nearest_m = std::min(nearest_m, p_W.norm());
+      last = p_W;
+    }
+    EXPECT_NEAR(nearest_m, 0.8, 0.01) << beside_m;
+    EXPECT_NEAR((last - Eigen::Vector3d(-3.0, beside_m, 0.0)).norm(), 0.0, 0.01) << "it goes on";
+  }
 }
 
 TEST(Path, WalksWaitsAndTurns) {

@@ -206,7 +206,7 @@ Moment SimulatedHome::moment_at(MonoTime time) {
   X_WR[robot_] = leaning(segway_.base().state_at(time), segway_.base().axle_height_m());
   Moment moment;
   moment.state = state_at(world_.scene, time_s, switched_at(time_s), X_WR);
-  watch_robot(world_.scene, X_WR[robot_], moment.state);
+  heed_robot(world_.scene, X_WR[robot_], moment.state);
   for (std::size_t i = 0; i < world_.scene.robots.size(); ++i) {  // the file's other robots are for other scenarios
     if (i != robot_) moment.state.presence[static_cast<std::size_t>(world_.scene.robots[i].figure)].present = false;
   }

@@ -61,6 +61,7 @@ struct Figure {
   std::vector<PresenceKey> presence;
   bool watches_robot =
       false;  ///< faces the robot that drives wherever it stands; its path says where, not the heading.
+  double makes_way_m = 0.0;  ///< steps aside where it would be nearer to the robot that drives; 0: does not.
 };
 
 /// The poses of all joints in the world, X_WJ, for a body that stands at X_WF and has walked `walked_m` at `speed_mps` by `time_s`.

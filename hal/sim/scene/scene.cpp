@@ -21,6 +21,19 @@ Rgb intensity(const Lamp& lamp, double time_s) {
   return lamp.color.cwiseProduct(factor_at(lamp.script, time_s)) * (candela / brightest);
 }
 
+/// Where somebody on a path stands who keeps a distance from the robot: sideways of the path, so that both pass each other.
+Eigen::Vector3d stepped_aside(const PathPoint& point, const Eigen::Vector3d& p_WR, double keeps_m) {
+  const double c = cosine(point.heading_rad);
+  const double s = sine(point.heading_rad);
+  const Eigen::Vector3d to_robot = p_WR - point.p_W;
+  const double ahead_m = c * to_robot.x() + s * to_robot.y();
+  const double left_m = c * to_robot.y() - s * to_robot.x();
+  if (ahead_m * ahead_m + left_m * left_m >= keeps_m * keeps_m) return point.p_W;
+  const double beside_m = std::sqrt(keeps_m * keeps_m - ahead_m * ahead_m);
+  const double to_left_m = left_m < -keeps_m / 3.0 ? left_m + beside_m : left_m - beside_m;
+  return point.p_W + to_left_m * Eigen::Vector3d(-s, c, 0.0);
+}
+
 }  // namespace
 
 int Scene::add_material(Material material) {
@@ -72,14 +85,15 @@ SceneState state_at(const Scene& scene, double time_s, const SwitchStates& switc
   return state;
 }
 
-void watch_robot(const Scene& scene, const Pose& X_WR, SceneState& state) {
+void heed_robot(const Scene& scene, const Pose& X_WR, SceneState& state) {
   for (std::size_t i = 0; i < scene.figures.size(); ++i) {
     const Figure& figure = scene.figures[i];
-    if (!figure.watches_robot) continue;
-    const PathPoint point = figure.path.at(state.time_s);
+    if (!figure.watches_robot && figure.makes_way_m == 0.0) continue;
+    PathPoint point = figure.path.at(state.time_s);
+    point.p_W = stepped_aside(point, X_WR.translation(), figure.makes_way_m);
     const Eigen::Vector3d way = X_WR.translation() - point.p_W;
-    state.X_WJ[i] = pose_joints(figure, pose_at(point.p_W, arc_tangent(way.y(), way.x())), state.time_s, point.walked_m,
-                                point.speed_mps);
+    if (figure.watches_robot) point.heading_rad = arc_tangent(way.y(), way.x());
+    state.X_WJ[i] = pose_joints(figure, pose_on_path(point), state.time_s, point.walked_m, point.speed_mps);
   }
 }
 

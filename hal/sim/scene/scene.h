@@ -65,8 +65,9 @@ struct SceneState {
 SceneState state_at(const Scene& scene, double time_s, const SwitchStates& switches = {},
                     const std::vector<Pose>& X_WR = {});
 
-/// Turns whoever watches the robot (Figure::watches_robot) towards it.
-void watch_robot(const Scene& scene, const Pose& X_WR, SceneState& state);
+/// Turns whoever watches the robot (Figure::watches_robot) towards it, and puts whoever makes way for it (Figure::makes_way_m) aside, to its
+/// own right; to its left where the robot is on its right.
+void heed_robot(const Scene& scene, const Pose& X_WR, SceneState& state);
 
 /// Is the part there at that moment?
 bool is_present(const Part& part, const SceneState& state);

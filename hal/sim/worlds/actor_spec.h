@@ -139,6 +139,7 @@ struct PersonSpec {
   std::vector<PresenceSpec> presence;
   WalkSpec walk;
   bool watches_robot = false;
+  double makes_way_m = 0.0;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -152,6 +153,8 @@ struct PersonSpec {
     visit.section("walk", self.walk, "where the person goes");
     visit.flag("watches_robot", self.watches_robot,
                "turns to the robot that drives, wherever it is; headings then mean nothing");
+    visit.number("makes_way_m", self.makes_way_m, {0.0, 5.0}, "m",
+                 "steps aside where it would come nearer to the robot that drives; 0: walks through it");
   }
 };
 

@@ -195,6 +195,7 @@ void WorldBuilder::add_person(const PersonSpec& spec) {
   Figure& figure = world_.scene.figures[static_cast<std::size_t>(sim::add_person(world_.scene, person))];
   set_script(figure, spec.walk, spec.presence, spec.line);
   figure.watches_robot = spec.watches_robot;
+  figure.makes_way_m = spec.makes_way_m;
   for (const HeadSpec& key : spec.head) figure.head.push_back({key.at_s, degrees(key.yaw_deg), degrees(key.pitch_deg)});
 }
 
