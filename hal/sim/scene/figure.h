@@ -59,8 +59,8 @@ struct Figure {
   double stride_m = 1.3;  ///< of two steps: one period of the gait.
   std::vector<HeadKey> head;
   std::vector<PresenceKey> presence;
-  bool watches_robot =
-      false;  ///< faces the robot that drives wherever it stands; its path says where, not the heading.
+  /// Faces the robot that drives wherever it stands; its path says where, not the heading.
+  bool watches_robot = false;
   double makes_way_m = 0.0;  ///< steps aside where it would be nearer to the robot that drives; 0: does not.
 };
 

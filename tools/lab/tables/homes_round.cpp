@@ -32,7 +32,7 @@ constexpr double kMostWrong_s = 1.0;
 constexpr double kFastest_mps = 0.4;  // of the shipped robot
 constexpr double kPeople_mps = 0.7;
 constexpr double kMakesWay_m = 0.8;  // from the robot's axle
-constexpr double kStart_m = 0.15;  // standard deviations of the first pose, as the robot's file states them
+constexpr double kStart_m = 0.15;    // standard deviations of the first pose, as the robot's file states them
 constexpr double kStart_deg = 4.0;
 
 /// `text` joined with `separator`, once for each place.
@@ -45,11 +45,12 @@ std::string of_places(const std::vector<sim::FloorPoint>& places, const char* se
 
 /// Somebody who walks the robot's way, again and again.
 std::string person(const char* name, int identity, const std::vector<sim::FloorPoint>& way) {
-  return fmt::format("\n[[person]]\nname = \"{}\"\nidentity = {}\nmakes_way_m = {}\nwalk = {{loops = true, stop = [{}]}}\n", name,
-                     identity, kMakesWay_m, of_places(way, ", ", [](const sim::FloorPoint& place) {
-                       return fmt::format("{{at_m = [{:.3f}, {:.3f}, 0.0], speed_mps = {}, wait_s = 0.5}}", place.x,
-                                          place.y, kPeople_mps);
-                     }));
+  return fmt::format(
+      "\n[[person]]\nname = \"{}\"\nidentity = {}\nmakes_way_m = {}\nwalk = {{loops = true, stop = [{}]}}\n", name,
+      identity, kMakesWay_m, of_places(way, ", ", [](const sim::FloorPoint& place) {
+        return fmt::format("{{at_m = [{:.3f}, {:.3f}, 0.0], speed_mps = {}, wait_s = 0.5}}", place.x, place.y,
+                           kPeople_mps);
+      }));
 }
 
 Result<void> write_text(const std::filesystem::path& file, const std::string& text) {
@@ -179,7 +180,8 @@ Result<Report> homes_round(const Setting& setting) {
   of_a_minute.add_rows("a minute", setting.seed, report);
   of_three.add_rows("three minutes", setting.seed, report);
   report.notes = {
-      "Not in the dissertation. A trial is a home of its own (`cgsr sim home`) with its clutter, of which no map knows, "
+      "Not in the dissertation. A trial is a home of its own (`cgsr sim home`) with its clutter, of which no map "
+      "knows, "
       "and its calibrated copy; the robot goes through its rooms again and again. Two people walk the same way, one as "
       "it does, one towards it, and step aside for it, 0.8 m from its axle. Every fifth round takes three minutes, the "
       "others one.",
