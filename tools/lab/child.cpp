@@ -36,6 +36,10 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
+std::string cgsr_program() {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr").string();
+}
+
 }  // namespace
 
 std::filesystem::path scratch_json() {
@@ -56,6 +60,15 @@ Result<nlohmann::json> run_for_json(const std::vector<std::string>& words, const
   return result;
 }
 
+Result<nlohmann::json> run_robot(const std::filesystem::path& config, std::uint64_t seed,
+                                 const std::vector<std::string>& more) {
+  const auto json = scratch_json();
+  std::vector<std::string> words{cgsr_program(),       "run",         "--config", config.string(), "--seed",
+                                 std::to_string(seed), "--log-level", "warning",  "--json",        json.string()};
+  words.insert(words.end(), more.begin(), more.end());
+  return run_for_json(words, json);
+}
+
 Result<std::string> run_for_text(const std::vector<std::string>& words) {
   const auto log = scratch_json().replace_extension("txt");
   const int code = run_logged(words, log);
@@ -64,6 +77,35 @@ Result<std::string> run_for_text(const std::vector<std::string>& words) {
   std::filesystem::remove(log, ignored);
   if (code != 0) return fail(fmt::format("{}: ended with exit code {}\n{}", fmt::join(words, " "), code, printed));
   return printed;
+}
+
+Result<std::string> run_cgsr(std::vector<std::string> words) {
+  words.insert(words.begin(), cgsr_program());
+  return run_for_text(words);
+}
+
+std::vector<std::string> filmed(const std::optional<std::filesystem::path>& videos, const std::string& name) {
+  if (!videos) return {};
+  std::filesystem::create_directories(*videos);
+  const auto path = (*videos / name).string();
+  return {"--csv", path + ".csv", "--video", path + ".mkv"};
+}
+
+Result<void> write_text(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream out(path);
+  out << text;
+  if (!out.flush()) return fail(fmt::format("{}: cannot be written", path.string()));
+  return {};
+}
+
+TableFolder::TableFolder(const std::string& name)
+    : path_(std::filesystem::temp_directory_path() / fmt::format("cgsr-{}-{}", name, getpid())) {
+  std::filesystem::create_directories(path_);
+}
+
+TableFolder::~TableFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace cgsr::lab

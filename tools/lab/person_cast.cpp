@@ -15,33 +15,7 @@ namespace {
 
 constexpr int kPortraits = 4;
 
-Result<void> write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path);
-  out << text;
-  if (!out.flush()) return fail(fmt::format("{}: cannot be written", path.string()));
-  return {};
-}
-
-std::string cgsr_program() {
-  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr").string();
-}
-
 }  // namespace
-
-Result<std::string> run_cgsr(std::vector<std::string> words) {
-  words.insert(words.begin(), cgsr_program());
-  return run_for_text(words);
-}
-
-TableFolder::TableFolder(const std::string& name)
-    : path_(std::filesystem::temp_directory_path() / fmt::format("cgsr-{}-{}", name, getpid())) {
-  std::filesystem::create_directories(path_);
-}
-
-TableFolder::~TableFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 Result<std::string> empty_arena() {
   const std::string path = source_path("config/worlds/people.toml");
@@ -64,7 +38,7 @@ Result<std::filesystem::path> Portraits::of(int identity) {
       "}}\nhead = [{{ at_s = 0.0 }}, {{ at_s = 1.0, yaw_deg = 12.0 }}, {{ at_s = 2.0, yaw_deg = -12.0 }}]\n",
       identity);
   const auto file = folder_ / fmt::format("sitter-{}.toml", identity);
-  if (auto written = write(file, *world); !written) return tl::unexpected(written.error());
+  if (auto written = write_text(file, *world); !written) return tl::unexpected(written.error());
   std::filesystem::create_directories(pictures);
   for (int i = 0; i < kPortraits; ++i) {
     auto taken = run_cgsr({"sim", "render", "--world", file.string(), "--time", fmt::format("{}", 0.5 + 0.7 * i),
@@ -95,15 +69,13 @@ Result<nlohmann::json> run_with_people(const TableFolder& folder, const std::str
                                        const std::vector<std::string>& more) {
   const auto robot = folder / "robot.toml";
   const bool own_scenario = std::filesystem::exists(folder / "scenario.toml");
-  const auto written = write(robot, fmt::format("extends = \"{}\"\nperson.identities = \"identities\"\n{}",
-                                                std::filesystem::absolute(shipped).string(),
-                                                own_scenario ? "sim.scenario = \"scenario.toml\"\n" : ""));
+  const auto written = write_text(robot, fmt::format("extends = \"{}\"\nperson.identities = \"identities\"\n{}",
+                                                     std::filesystem::absolute(shipped).string(),
+                                                     own_scenario ? "sim.scenario = \"scenario.toml\"\n" : ""));
   if (!written) return tl::unexpected(written.error());
-  const auto json = scratch_json();
-  std::vector<std::string> words{cgsr_program(), "run",     "--config", robot.string(), "--seed", std::to_string(seed),
-                                 "--log-level",  "warning", "--json",   json.string(),  "--force"};
+  std::vector<std::string> words{"--force"};
   words.insert(words.end(), more.begin(), more.end());
-  return run_for_json(words, json);
+  return run_robot(robot, seed, words);
 }
 
 }  // namespace cgsr::lab

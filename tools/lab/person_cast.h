@@ -8,24 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "platform/error.h"
+#include "tools/lab/child.h"
 
 namespace cgsr::lab {
-
-/// Runs `cgsr` beside the lab's own program. \return what it printed; or its exit code and that.
-Result<std::string> run_cgsr(std::vector<std::string> words);
-
-/// A folder for the files of a table, gone with this.
-class TableFolder {
- public:
-  explicit TableFolder(const std::string& name);
-  ~TableFolder();
-  TableFolder(const TableFolder&) = delete;
-  TableFolder& operator=(const TableFolder&) = delete;
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The shipped person arena without its people, as text.
 Result<std::string> empty_arena();

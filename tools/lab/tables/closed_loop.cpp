@@ -36,14 +36,6 @@ constexpr std::array kDemands{
     Demand{"fastest_object_mps", "fastest object", "m/s", 0.5, false},
 };
 
-Result<nlohmann::json> run_once(const std::string& robot, std::uint64_t seed) {
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  const auto summary_file = scratch_json();
-  return run_for_json({program.string(), "run", "--config", robot, "--seed", std::to_string(seed), "--log-level",
-                       "warning", "--json", summary_file.string()},
-                      summary_file);
-}
-
 /// What did not happen in a run (a loss, say) has no value in it.
 std::vector<double> values_of(const std::vector<nlohmann::json>& runs, const char* key) {
   std::vector<double> values;
@@ -75,7 +67,7 @@ Result<Report> closed_loop(const Setting& setting) {
   std::vector<nlohmann::json> runs;
   for (int i = 0; i < count; ++i) {
     setting.progress(fmt::format("closed loop, run {} of {}", i + 1, count));
-    auto run = run_once(robot, setting.seed + static_cast<std::uint64_t>(i));
+    auto run = run_robot(robot, setting.seed + static_cast<std::uint64_t>(i));
     if (!run) return tl::unexpected(run.error());
     if (!run->contains("truth")) return fail(fmt::format("{}: is not a robot of the simulated home", robot));
     runs.push_back(std::move(*run));

@@ -1,11 +1,7 @@
 // Chapter 4 in the closed loop: a round through the simulated home on wheels that slip, with another calibrated copy for each seed.
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -29,11 +25,12 @@ Result<std::filesystem::path> robot_with_copy(const std::filesystem::path& shipp
   auto written = sim::write_calibration(sim::calibrated_copy(scene, robot, errors, drawn), errors, drawn, folder);
   if (!written) return tl::unexpected(written.error());
   const auto path = folder / "robot-file.toml";
-  std::ofstream out(path);
-  out << fmt::format(
-      "extends = \"{}\"\nlocalization = {{map = \"map.obj\", camera = \"camera.yaml\", mount = \"robot.toml\"}}\n",
-      std::filesystem::absolute(shipped).string());
-  if (!out.flush()) return fail(fmt::format("{}: cannot be written", path.string()));
+  auto robot_file = write_text(
+      path,
+      fmt::format(
+          "extends = \"{}\"\nlocalization = {{map = \"map.obj\", camera = \"camera.yaml\", mount = \"robot.toml\"}}\n",
+          std::filesystem::absolute(shipped).string()));
+  if (!robot_file) return tl::unexpected(robot_file.error());
   return path;
 }
 
@@ -54,24 +51,15 @@ Result<Report> home_round(const Setting& setting) {
       setting.config_file.empty() ? source_path("config/robots/sim-home-round.toml") : setting.config_file;
   const auto home = Place::make("home");
   if (!home) return tl::unexpected(home.error());
-  const auto folder = std::filesystem::temp_directory_path() / fmt::format("cgsr-round-{}", getpid());
-  const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "cgsr";
+  const TableFolder folder("home-round");
   std::vector<nlohmann::json> runs;
   for (int i = 0; i < setting.trials; ++i) {
     const std::uint64_t seed = setting.seed + static_cast<std::uint64_t>(i);
     setting.progress(fmt::format("home-round, seed {}", seed));
-    const auto robot = robot_with_copy(shipped, (*home)->scene(), 0, seed, folder);
+    const auto robot = robot_with_copy(shipped, (*home)->scene(), 0, seed, folder / "copy");
     if (!robot) return tl::unexpected(robot.error());
-    const auto json = scratch_json();
-    std::vector<std::string> call{program.string(),     "run",         "--config", robot->string(), "--seed",
-                                  std::to_string(seed), "--log-level", "warning",  "--json",        json.string()};
-    if (setting.videos) {
-      std::filesystem::create_directories(*setting.videos);
-      const auto name = *setting.videos / fmt::format("home-round-{}", seed);
-      call.insert(call.end(), {"--csv", name.string() + ".csv", "--video", name.string() + ".mkv"});
-    }
-    auto run = run_for_json(call, json);
-    std::filesystem::remove_all(folder);
+    auto run = run_robot(*robot, seed, filmed(setting.videos, fmt::format("home-round-{}", seed)));
+    std::filesystem::remove_all(folder / "copy");
     if (!run) return tl::unexpected(run.error());
     if (!run->contains("pose")) return fail(fmt::format("seed {}: the robot never found out where it is", seed));
     runs.push_back(std::move(*run));
