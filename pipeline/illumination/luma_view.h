@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -7,15 +8,19 @@
 
 namespace cgsr::illumination {
 
-/// Which levels of an image mean light.
+/// How the levels of an image code light, by the sRGB transfer function (IEC 61966-2-1) above its linear foot, as cameras do unless they say
+/// something else (V4L2_XFER_FUNC_SRGB):
+///   level = zero + k light^(1 / kLightPower)
 struct LightLevels {
-  double black =
-      0.0;  ///< the level of no light at all; below 0 in a difference of two images, of which neither is dark.
-  double saturated = 255.0;  ///< from this level on the image holds no more light.
+  double zero = 0.0;  ///< below what is black; lower still in a difference of two images, of which neither is dark.
+  double saturated = 255.0;  ///< from this level on a grey image holds no more light.
 };
+inline constexpr double kLightPower = 2.4;
 
 constexpr LightLevels light_levels_of(PixelFormat format) {
-  return format == PixelFormat::kYuyv ? LightLevels{16.0, 233.5} : LightLevels{0.0, 253.5};
+  constexpr double kOffset = 0.055;  // of the range from black to white
+  return format == PixelFormat::kYuyv ? LightLevels{16.0 - kOffset * 219.0, 233.5}
+                                      : LightLevels{-kOffset * 255.0, 253.5};
 }
 
 /// The brightness of an image as it lies there, YUYV or grey, read between pixels: no grey copy is made for the few places that are looked at.
@@ -56,7 +61,33 @@ class LumaView {
     return top + fy * (bottom - top);
   }
 
+  /// Can one of the four neighbours hold no more light, in any of its colours? The light of a warm lamp is too much for red before it is for the brightness.
+  /// \param level  at(x, y): of a place as dark as a shadow the other neighbours tell enough.
+  [[nodiscard]] bool is_clipped(double x, double y, float level) const {
+    if (level < kLeastClipped) return false;
+    const auto column = static_cast<std::ptrdiff_t>(x);
+    const std::uint8_t* upper = data_ + static_cast<std::ptrdiff_t>(y) * stride_;
+    for (const std::uint8_t* row : {upper, upper + stride_}) {
+      if (is_clipped(row, column) || is_clipped(row, column + 1)) return true;
+    }
+    return false;
+  }
+
  private:
+  /// BT.601 takes the colours out of YUYV.
+  [[nodiscard]] bool is_clipped(const std::uint8_t* row, std::ptrdiff_t column) const {
+    const std::uint8_t level = row[column * step_];
+    if (step_ == 1) return level >= levels_.saturated;
+    const std::uint8_t* pair = row + column / 2 * 4;
+    const float u = static_cast<float>(pair[1]) - 128.0F;
+    const float v = static_cast<float>(pair[3]) - 128.0F;
+    const float most = std::max({1.596F * v, -0.392F * u - 0.813F * v, 2.017F * u});
+    return 1.164F * (static_cast<float>(level) - 16.0F) + most >= kClippedColor;
+  }
+
+  static constexpr float kLeastClipped = 170.0F;
+  static constexpr float kClippedColor = 250.0F;  // of 255: chroma is shared by two pixels, and noisy
+
   const std::uint8_t* data_;
   std::ptrdiff_t stride_;
   int step_;

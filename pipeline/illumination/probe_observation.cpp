@@ -17,7 +17,8 @@ double share_saturated(const Board& board, const LumaView& luma) {
           view.pixel({((i + 0.5) / kAlong - 0.5) * board.depth_m, ((k + 0.5) / kAcross - 0.5) * board.width_m, 0.0});
       if (!pixel.in_front || !luma.holds(pixel.at.x(), pixel.at.y())) continue;
       ++places;
-      saturated += luma.at(pixel.at.x(), pixel.at.y()) >= luma.levels().saturated ? 1 : 0;
+      const float level = luma.at(pixel.at.x(), pixel.at.y());
+      saturated += luma.is_clipped(pixel.at.x(), pixel.at.y(), level) ? 1 : 0;
     }
   }
   return places == 0 ? 0.0 : static_cast<double>(saturated) / places;

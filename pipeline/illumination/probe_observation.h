@@ -48,7 +48,7 @@ struct ProbeObservation {
   std::array<ShadowFinder::Found, kMostProbes> probe;  ///< the shadows of each.
   int missing = 0;                                     ///< bit i: probe i stands on the board, but was not found.
   int saturated =
-      0;  ///< bit i: the board about probe i is brighter than the camera holds; no shadow of it is looked for.
+      0;  ///< bit i: the board about probe i is brighter than the camera holds; its shadow may not be found.
 };
 
 /// Looks at the probes in every image : the board first, then each probe's surroundings, which follow from the board's geometry and not from

@@ -47,6 +47,7 @@ struct ProbeShadow {
   int lines = 0;  ///< 2: the tip is known; 1: the plane through lamp, tip and this line.
   std::array<bool, 2> line_seen{};
   double contrast = 0.0;  ///< grey levels.
+  double level = 0.0;     ///< of the board beside it: more than the image holds where the board is too bright for it.
   double support = 0.0;   ///< share of places along the lines that show it.
   double rms = 0.0;       ///< grey levels that the model does not explain.
   /// Of the lamp, as soft as the shadow's edges are; and its standard deviation.

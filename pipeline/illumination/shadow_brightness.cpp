@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pipeline/illumination/board.h"
+#include "pipeline/illumination/luma_view.h"
 
 namespace cgsr::illumination {
 namespace {
@@ -14,6 +15,28 @@ constexpr float kScale = 0.12F;
 
 constexpr float kLeastContrast = 0.01F;
 constexpr float kMostContrast = 0.98F;
+
+constexpr auto kPower = static_cast<float>(kLightPower);
+
+/// \return light^(1 / 2.4), for light of 0.0025 to 1: the root r of r^6 = y^5 with y^2 = light, by a parabola and a step of Newton's from there.
+Lane coded_level(const Lane& light) {
+  const Lane y = light.sqrt();
+  const Lane less = y - 1.0F;
+  const Lane r = 1.0F + less * (5.0F / 6.0F - 0.126F * less);
+  const Lane r3 = r * r * r;
+  return r * (5.0F + light * light * y / (r3 * r3)) * (1.0F / 6.0F);
+}
+static_assert(kLightPower == 2.4);
+
+/// Of four samples: robust ones, and 0 where the model is brighter than a place that is clipped, and behind the last.
+Lane weights(const Lane& residual, float scale, const ShadowSamples& samples, int first) {
+  const Lane relative = residual * (1.0F / scale);
+  const Lane clipped = Eigen::Map<const Lane, Eigen::Aligned16>(samples.clipped.data() + first);
+  const auto tells_nothing = clipped > 0.5F && residual < 0.0F;
+  Lane robust = tells_nothing.select(0.0F, 1.0F / (1.0F + relative * relative));
+  for (int k = samples.count - first; k < kLane; ++k) robust[k] = 0.0F;
+  return robust;
+}
 
 }  // namespace
 
@@ -39,17 +62,22 @@ ShadowBrightness::ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& e
   slope_x_ = static_cast<float>(x[kSlopeX]);
   slope_y_ = static_cast<float>(x[kSlopeY]);
   blur_ = static_cast<float>(edges.blur_m);
+  disc_ = edges.like_image ? 0.0F : 1.0F;
   penumbra_ = static_cast<float>(x[kSoftness]);
-  const auto lit = static_cast<float>(std::max(1.0, x[kLevel] - edges.black));
+  const auto lit = static_cast<float>(std::max(1.0, x[kLevel] - edges.zero));
   contrast_ = std::clamp(dark_ / lit, kLeastContrast, kMostContrast);
-  in_shadow_ = (1.0F - contrast_) * (1.0F - contrast_);
+  in_shadow_ = std::pow(1.0F - contrast_, kPower);
 }
 
 /// Where half of the lamp is hidden, a deep shadow has not lost half of its contrast yet.
-void ShadowBrightness::code(const Lane& hidden, Lane& coded, Lane& slope) const {
-  const Lane level = (1.0F - hidden * (1.0F - in_shadow_)).sqrt();
+/// \param coded  0..1. \param slope  its derivative by `hidden`. \param by_contrast  of coded times contrast, by the contrast.
+void ShadowBrightness::code(const Lane& hidden, Lane& coded, Lane& slope, Lane& by_contrast) const {
+  const Lane light = 1.0F - hidden * (1.0F - in_shadow_);
+  const Lane level = coded_level(light);
   coded = (1.0F - level) * (1.0F / contrast_);
-  slope = (0.5F * (1.0F - in_shadow_) / contrast_) / level;
+  const Lane steep = level / light;
+  slope = ((1.0F - in_shadow_) / (kPower * contrast_)) * steep;
+  by_contrast = (in_shadow_ / (1.0F - contrast_)) * hidden * steep;
 }
 
 ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) const {
@@ -59,11 +87,13 @@ ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) c
   for (const Line& line : line_) {
     const float d = qx * line.inward_x + qy * line.inward_y + radius_;
     const float soft = penumbra_ * std::clamp(qx * line.along_x + qy * line.along_y, 0.0F, 1.0F);
-    hidden += step_->at(d / std::sqrt(soft * soft + blur_ * blur_)).share;
+    const float variance = soft * soft + blur_ * blur_;
+    hidden += step_->at(d / std::sqrt(variance), disc_ * soft * soft / variance).share;
   }
   Lane coded;
   Lane slope;
-  code(Lane::Constant(std::max(0.0F, hidden)), coded, slope);
+  Lane by_contrast;
+  code(Lane::Constant(std::max(0.0F, hidden)), coded, slope, by_contrast);
   return {level_ + slope_x_ * from_foot.x() + slope_y_ * from_foot.y(), coded[0]};
 }
 
@@ -71,7 +101,6 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
   const float scale = std::max(kLeastScale, kScale * std::abs(dark_));
   LaneSums<kShadowUnknowns> table;
   LaneSums<kShadowUnknowns>::Row j;
-  j[kLevel] = Lane::Ones();
   for (int i = 0; i < samples.count; i += kLane) {
     const Lane x = Eigen::Map<const Lane, Eigen::Aligned16>(samples.x.data() + i);
     const Lane y = Eigen::Map<const Lane, Eigen::Aligned16>(samples.y.data() + i);
@@ -90,7 +119,8 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
       const Lane over_sigma = 1.0F / (soft * soft + blur_ * blur_).sqrt();
       Lane share;
       Lane density;
-      step_->at(d * over_sigma, share, density);
+      const Lane of_lamp = soft * over_sigma;
+      step_->at(d * over_sigma, disc_ * of_lamp * of_lamp, share, density);
       hidden += share;
       const Lane J_d = -dark_ * density * over_sigma;
       J_tip[side] = J_d * way;
@@ -98,8 +128,10 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
       J_softness -= J_d * d * soft * way * over_sigma * over_sigma;
     }
     const auto lit = hidden <= 0.0F;
+    Lane coded;
     Lane slope;
-    code(lit.select(0.0F, hidden), hidden, slope);
+    Lane by_contrast;
+    code(lit.select(0.0F, hidden), coded, slope, by_contrast);
     for (std::size_t side = 0; side < 2; ++side) {
       J_tip[side] = lit.select(0.0F, J_tip[side] * slope);
       J_foot[side] = lit.select(0.0F, J_foot[side] * slope);
@@ -109,16 +141,14 @@ ShadowSums ShadowBrightness::sum_up(const ShadowSamples& samples) const {
     j[kFootX] = -J_foot[0] * line_[0].inward_x - J_foot[1] * line_[1].inward_x;
     j[kFootY] = -J_foot[0] * line_[0].inward_y - J_foot[1] * line_[1].inward_y;
     j[kRadius] = J_foot[0] + J_foot[1];
-    j[kDark] = -hidden;
+    j[kDark] = -by_contrast;
+    j[kLevel] = 1.0F - contrast_ * (coded - by_contrast);
     j[kSoftness] = lit.select(0.0F, J_softness * slope);
     j[kSlopeX] = x;
     j[kSlopeY] = y;
-    const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * hidden);
+    const Lane residual = value - (level_ + slope_x_ * x + slope_y_ * y - dark_ * coded);
     j[LaneSums<kShadowUnknowns>::kResidual] = residual;
-    const Lane relative = residual * (1.0F / scale);
-    Lane robust = 1.0F / (1.0F + relative * relative);
-    for (int k = samples.count - i; k < kLane; ++k) robust[k] = 0.0F;
-    table.add(j, robust);
+    table.add(j, weights(residual, scale, samples, i));
   }
   ShadowSums sums;
   table.put_into(sums);

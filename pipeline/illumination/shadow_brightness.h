@@ -21,14 +21,19 @@ struct ShadowSamples {
   alignas(16) std::array<float, kMost> x{};
   alignas(16) std::array<float, kMost> y{};
   alignas(16) std::array<float, kMost> value{};
-  std::array<int, kMost> place{};  ///< along the lines, both lines counted on
+  alignas(16) std::array<float, kMost> clipped{};  ///< 1: the image holds no more light here; else 0.
+  std::array<int, kMost> place{};                  ///< along the lines, both lines counted on
   int count = 0;
+  int clipped_count = 0;
 
-  void add(const Eigen::Vector2f& from_foot, float level, int at) {
+  void clear() { count = clipped_count = 0; }
+  void add(const Eigen::Vector2f& from_foot, float level, bool is_clipped, int at) {
     const auto i = static_cast<std::size_t>(count++);
     x[i] = from_foot.x();
     y[i] = from_foot.y();
     value[i] = level;
+    clipped[i] = is_clipped ? 1.0F : 0.0F;
+    clipped_count += is_clipped ? 1 : 0;
     place[i] = at;
   }
 };
@@ -37,7 +42,9 @@ struct ShadowSamples {
 struct ShadowEdges {
   Eigen::Vector2d foot = Eigen::Vector2d::Zero();  ///< as measured: what the samples count from.
   double blur_m = 0.0005;                          ///< of the image, on the board: a standard deviation.
-  double black = 0.0;                              ///< the level of no light at all.
+  double zero = 0.0;                               ///< of the levels: LightLevels.
+  bool like_image =
+      false;  ///< what the lamp softens is as what the image blurs, with no end: for a fit that is still far off.
 };
 
 /// The normal equations of Gauss and Newton, robust weights counted.
@@ -49,8 +56,8 @@ struct ShadowSums {
 };
 
 /// The brightness of the board about a probe, with the shadow that ten unknowns describe: both lines are tangents from the shadow of the tip
-/// to the base, and the brightness between them is less by the contrast. A camera codes light about as its square root (sRGB, BT.601), and levels are compared
-/// as it coded them. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
+/// to the base, and the brightness between them is less by the contrast. Levels are compared as the camera coded the light (LightLevels). Of a place where the image holds no more
+/// light only that is known: it is as bright, or brighter. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
 class ShadowBrightness {
  public:
   /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about
@@ -80,18 +87,19 @@ class ShadowBrightness {
     float along_x = 0.0F, along_y = 0.0F;  // over its length
   };
 
-  void code(const Lane& hidden, Lane& coded, Lane& slope) const;
+  void code(const Lane& hidden, Lane& coded, Lane& slope, Lane& by_contrast) const;
 
   const SoftStep* step_;
   std::array<Line, 2> line_{};
   float in_shadow_ = 0.0F;             ///< of the light beside the shadow, what is left in it.
-  float contrast_ = 0.0F;              ///< of the level beside it, above black.
+  float contrast_ = 0.0F;              ///< of the level beside it, above LightLevels::zero.
   float off_x_ = 0.0F, off_y_ = 0.0F;  // of the foot from where it was measured
   float radius_ = 0.0F;
   float dark_ = 0.0F;
   float level_ = 0.0F;
   float slope_x_ = 0.0F, slope_y_ = 0.0F;
   float blur_ = 0.0F;
+  float disc_ = 1.0F;  ///< 0: no edge has the shape of the lamp.
   float penumbra_ = 0.0F;
   bool valid_ = false;
 };

@@ -23,7 +23,7 @@ struct ShadowStart {
 };
 
 /// Fits the shadow of a probe to the brightness along both of its lines: the shadow of the tip, the foot and radius of the base within what
-/// calibration leaves open, the shadow's contrast, how soft its edges are and the board's brightness, a plane. The softness tells the lamp's
+/// calibration leaves open, the shadow's contrast, how soft its edges are and the board's brightness, a plane; where the image holds too little light, as far as the dark side of the edges tells it. The softness tells the lamp's
 /// radius; beforehand it is known to the parameters' standard deviation. No edge image is needed, all of a line counts, and a line that is half hidden is completed.
 /// Ours; the dissertation finds the lines by Canny and Hough (Alg. 5.1).
 ///
@@ -62,6 +62,7 @@ class ShadowFit {
   [[nodiscard]] bool settle(const LumaView& image, const BoardView& view,
                             const std::array<Outline, kMostProbes>& behind, const ShadowStart& start, Fitted& fitted);
   [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x) const;
+  [[nodiscard]] static bool is_dark(const ShadowUnknowns& x, const ShadowNormal& covariance);
   [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
 

@@ -89,6 +89,8 @@ float ShadowFinder::hidden_share(const Vector2d& from_foot, const Outline& outli
 }
 
 void ShadowFinder::look_around(const LumaView& image, const BoardView& view) {
+  int seen_places = 0;
+  int clipped = 0;
   for (int ray = 0; ray < kRays; ++ray) {
     for (int ring = 0; ring < kRings; ++ring) {
       const auto r = static_cast<std::size_t>(ray);
@@ -100,8 +102,11 @@ void ShadowFinder::look_around(const LumaView& image, const BoardView& view) {
       if (!pixel.in_front || !image.holds(pixel.at.x(), pixel.at.y(), 1.0)) continue;
       valid_[r][k] = 1.0F;
       value_[r][k] = image.at(pixel.at.x(), pixel.at.y());
+      ++seen_places;
+      clipped += image.is_clipped(pixel.at.x(), pixel.at.y(), value_[r][k]) ? 1 : 0;
     }
   }
+  clipped_share_ = seen_places > 0 ? static_cast<double>(clipped) / seen_places : 0.0;
 }
 
 void ShadowFinder::take_plane_away() {
@@ -355,6 +360,12 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   if (with_tip.covariance.trace() < kTipFound_m * kTipFound_m) shadow = with_tip;
 }
 
+// How much darker than the plane it is where so much of the lamp is hidden. A plane that was clipped is not as bright as the board.
+float ShadowFinder::darkness_seen(const ProbeShadow& shadow, float hidden) const {
+  const double clipped = std::max(0.0, shadow.level - plane_[0]);
+  return static_cast<float>(std::max(0.0, shadow.contrast * static_cast<double>(hidden) - clipped));
+}
+
 // Is it dark between the lines too, from the base on? A spot beside a cone has edges that fit, but no such inside.
 bool ShadowFinder::is_filled(const ProbeShadow& shadow) const {
   const Outline outline = outline_of(probe_.foot_B, probe_.radius_m, shadow.p_BS);
@@ -365,7 +376,7 @@ bool ShadowFinder::is_filled(const ProbeShadow& shadow) const {
       if (valid_[r][k] == 0.0F) continue;
       if (hidden_share(grid_[r * kRings + k], outline, kShapeBlur_m) < 0.9F) continue;
       ++asked;
-      if (static_cast<double>(value_[r][k]) < -0.5 * shadow.contrast) ++dark;
+      if (value_[r][k] < -0.5F * darkness_seen(shadow, 1.0F)) ++dark;
     }
   }
   return dark >= kLeastFilled * asked;
@@ -378,22 +389,9 @@ void ShadowFinder::take_away(const ProbeShadow& shadow) {
       const auto r = static_cast<std::size_t>(ray);
       const auto k = static_cast<std::size_t>(ring);
       const float share = hidden_share(grid_[static_cast<std::size_t>(ray * kRings + ring)], outline, kShapeBlur_m);
-      value_[r][k] += valid_[r][k] * static_cast<float>(shadow.contrast) * share;
+      value_[r][k] += valid_[r][k] * darkness_seen(shadow, share);
     }
   }
-}
-
-double ShadowFinder::share_brighter_than(double level) const {
-  int seen_places = 0;
-  int brighter = 0;
-  for (std::size_t r = 0; r < kRays; ++r) {
-    for (std::size_t k = 0; k < kRings; ++k) {
-      if (valid_[r][k] == 0.0F) continue;
-      ++seen_places;
-      if (static_cast<double>(value_[r][k]) > level) ++brighter;
-    }
-  }
-  return seen_places > 0 ? static_cast<double>(brighter) / seen_places : 0.0;
 }
 
 // Begun with the length that shows along the axis, and if that leads to none, with what the rings tell.
@@ -421,8 +419,6 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     behind_[static_cast<std::size_t>(i)] = outline_of(probe.foot_B, probe.radius_m, cast(view.p_BC(), probe.p_BA));
   }
   look_around(image, view);
-  saturated_ = share_brighter_than(image.levels().saturated);
-  if (is_saturated()) return found;
   take_plane_away();
   noise_ = noise();
   std::array<int, 4> tried{};

@@ -14,7 +14,8 @@
 
 namespace cgsr::illumination {
 
-inline constexpr double kMostSaturated = 0.1;  ///< of the places on the board that were looked at.
+inline constexpr double kMostSaturated =
+    0.1;  ///< of the places on the board that were looked at: more have a name of their own.
 
 /// Finds the shadows of one probe (Alg. 5.1). Where the dissertation takes Canny's edges and Hough's lines, and then the point where two of them
 /// meet, this looks for the meeting point itself: the two lines of a cone's shadow are the tangents from the shadow of its tip to its base, so the
@@ -31,15 +32,13 @@ class ShadowFinder {
     int count = 0;
   };
   /// \param X_BC  the camera against the board, registered in this image.
-  /// Where more than kMostSaturated of the board about the probe is saturated, the edges of its shadow are not where the light is half hidden, but
-  /// where the image begins to hold it: none is looked for.
   Found find(const LumaView& image, const geometry::Pose& X_BC);
 
   /// Compares every wedge with every ray, which costs five times as much: what the quick search is judged by.
   void search_everywhere() { everywhere_ = true; }
 
-  /// Whether the last image has no level left for what is around the probe.
-  [[nodiscard]] bool is_saturated() const { return saturated_ > kMostSaturated; }
+  /// Whether the last image can't hold the light around the probe: a shadow there is known less well, and may not be found.
+  [[nodiscard]] bool is_saturated() const { return clipped_share_ > kMostSaturated; }
 
  private:
   static constexpr int kRings = 8;
@@ -69,7 +68,6 @@ class ShadowFinder {
     std::size_t count = 0;
   };
 
-  [[nodiscard]] double share_brighter_than(double level) const;
   void take_plane_away();
   [[nodiscard]] double noise() const;
   void look_around(const LumaView& image, const BoardView& view);
@@ -89,6 +87,7 @@ class ShadowFinder {
                                 ProbeShadow& shadow);
   [[nodiscard]] bool is_explained(const ProbeShadow& shadow) const;
   [[nodiscard]] bool is_filled(const ProbeShadow& shadow) const;
+  [[nodiscard]] float darkness_seen(const ProbeShadow& shadow, float hidden) const;
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
 
@@ -109,7 +108,7 @@ class ShadowFinder {
   // The board's brightness: at the foot, and its rise over a base's radius.
   Eigen::Vector3d plane_ = Eigen::Vector3d::Zero();
   double noise_ = 0.0;  // of the board by itself, grey levels
-  double saturated_ = 0.0;
+  double clipped_share_ = 0.0;
   bool everywhere_ = false;
 };
 

@@ -71,7 +71,7 @@ bool SwitchChecker::has_moved(const Registration& registration, const ImageView&
 // What is left of the light in the difference's shadows has the level 0 there.
 LumaView SwitchChecker::subtract(const ImageView& on, const ImageView& off, const geometry::Pose& X_BC) {
   const LumaView without(off);
-  const LightLevels levels{.black = without.levels().black - mean_on_board(without, X_BC),
+  const LightLevels levels{.zero = without.levels().zero - mean_on_board(without, X_BC),
                            .saturated = std::numeric_limits<double>::infinity()};
   const int pixel_bytes = bytes_per_pixel(on.format);
   const int width = on.width_px;

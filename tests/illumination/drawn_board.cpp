@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <random>
 #include <tuple>
 
@@ -11,6 +12,15 @@ namespace {
 constexpr int kFirstRowOfInterest = 262;  // above it the shipped camera sees neither board nor cone
 constexpr int kSide = 3;                  // rays of a pixel across and down
 constexpr int kRays = kSide * kSide;
+
+constexpr double kZero = -0.055 * 255.0;  // of the sRGB transfer function, as levels
+
+double light_of(double level) {
+  return std::pow(std::max(0.0, level - kZero), 2.4);
+}
+double level_of(double light) {
+  return kZero + std::pow(std::max(0.0, light), 1.0 / 2.4);
+}
 
 auto lens_of(const geometry::Camera& c) {
   return std::make_tuple(c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.k1, c.k2, c.p1, c.p2, c.k3);
@@ -67,8 +77,9 @@ DrawnImage draw(const Board& board, const geometry::Pose& X_BC, const Drawing& d
   const Hidden behind(board, cones, X_BC.translation());
   std::vector<Hidden> dark;
   for (const auto& lamp : drawing.lamps_B) dark.emplace_back(board, cones, lamp);
-  const double in_shadow = std::max(0.0, 1.0 - drawing.shadow_level / drawing.board_level);
-  const double light_of_part = (1.0 - in_shadow * in_shadow) / drawing.lamp_parts;
+  const double board_light = light_of(drawing.board_level);
+  const double light_of_part =
+      (board_light - light_of(drawing.board_level - drawing.shadow_level)) / drawing.lamp_parts;
   const auto seen_along = [&](const Eigen::Vector2d& ideal) {
     const Eigen::Vector3d ray = X_BC.linear() * Eigen::Vector3d(ideal.x(), ideal.y(), 1.0);
     if (ray.z() >= -1e-6) return drawing.room_level;
@@ -76,23 +87,20 @@ DrawnImage draw(const Board& board, const geometry::Pose& X_BC, const Drawing& d
     const Eigen::Vector2d p_B = meets.head<2>();
     if (behind.has(p_B)) return drawing.cone_level;
     if (std::abs(p_B.x()) >= board.depth_m / 2 || std::abs(p_B.y()) >= board.width_m / 2) return drawing.room_level;
-    double light = 1.0;
+    double light = board_light;
     for (const Hidden& shadow : dark) light -= shadow.has(p_B) ? light_of_part : 0.0;
-    return drawing.board_level * std::sqrt(std::max(0.0, light)) - drawing.darker(p_B);
+    return level_of(light) - drawing.darker(p_B);
   };
   auto next = rays_of(board.camera).begin();
   for (int y = 0; y < image.height_px; ++y) {
     for (int x = 0; x < image.width_px; ++x) {
       double light = 0.0;  // of the whole pixel: it is coded after it was gathered
       const int rays = y < kFirstRowOfInterest ? 0 : kRays;
-      if (rays == 0) light = drawing.room_level * drawing.room_level;
-      for (int sub = 0; sub < rays; ++sub) {
-        const double level = seen_along(*next++);
-        light += level * level / 9.0;
-      }
+      if (rays == 0) light = light_of(drawing.room_level);
+      for (int sub = 0; sub < rays; ++sub) light += light_of(seen_along(*next++)) / kRays;
       double noise = -6.0;
       for (int i = 0; i < 12; ++i) noise += random() / 4294967296.0;
-      const double level = std::clamp(std::sqrt(light) + drawing.noise * noise, 0.0, 255.0);
+      const double level = std::clamp(level_of(light) + drawing.noise * noise, 0.0, 255.0);
       image.grey[static_cast<std::size_t>(y * image.width_px + x)] = static_cast<std::uint8_t>(std::lround(level));
     }
   }

@@ -55,10 +55,10 @@ struct DrawnImage {
 /// What is drawn beside board and cones.
 struct Drawing {
   std::vector<Eigen::Vector3d> lamps_B;  ///< point lamps, board's frame.
-  double board_level = 140.0;
-  double shadow_level = 30.0;  ///< how much darker, where all of a lamp is hidden.
+  double board_level = 140.0;            ///< above 255: the image holds less.
+  double shadow_level = 30.0;            ///< how much darker, where all of a lamp is hidden.
   int lamp_parts =
-      1;  ///< so many of lamps_B are one lamp: each takes its share of the light, which the camera codes by its square root.
+      1;  ///< so many of lamps_B are one lamp: each takes its share of the light, which the camera codes as sRGB.
   double cone_level = 90.0;
   double room_level = 60.0;
   double noise = 1.0;

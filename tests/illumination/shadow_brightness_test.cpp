@@ -15,15 +15,35 @@ namespace {
 using Eigen::Vector2d;
 using U = ShadowBrightness;
 
-const ShadowEdges kEdges{{0.01, -0.2}, 0.0006};
+const ShadowEdges kEdges{{0.01, -0.2}, 0.0006, -14.0};
 
 struct Plain {
   double value;
-  ShadowUnknowns
-      by;  ///< its derivative; how an edge's softness changes with its place, and the coding with the contrast, is left out.
+  ShadowUnknowns by;  ///< its derivative; how an edge's softness changes with its place is left out.
 };
 
-/// The model as it is written down: a place at a time, and with the integral itself instead of a table.
+/// The share of a ball that an edge hides, which the image blurs.
+double hidden_by_edge(double d, double sigma, double penumbra, double& density) {
+  const double x = d / sigma;
+  const double lamp = penumbra * penumbra / (sigma * sigma);
+  const double u = std::clamp(x / 2.0, -1.0, 1.0);
+  const double disc = 0.5 + (u * std::sqrt(1.0 - u * u) + std::asin(u)) / std::numbers::pi;
+  const double disc_density = std::sqrt(1.0 - u * u) / std::numbers::pi;
+  const double gauss = 0.5 * std::erfc(-x / std::sqrt(2.0));
+  const double gauss_density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
+  const double mix = lamp * lamp;
+  density = (gauss_density + mix * (disc_density - gauss_density)) / sigma;
+  return gauss + mix * (disc - gauss);
+}
+
+/// The level where so much of the lamp is hidden, out of the light that is left: sRGB, above its linear foot.
+double coded(double level, double dark, double hidden) {
+  const double lit = std::pow(level - kEdges.zero, 2.4);
+  const double in_shadow = std::pow(level - dark - kEdges.zero, 2.4);
+  return kEdges.zero + std::pow(lit + hidden * (in_shadow - lit), 1.0 / 2.4);
+}
+
+/// The model as it is written down: a place at a time, and with the curves themselves instead of a table.
 Plain plain_at(const ShadowUnknowns& x, const Vector2d& from_foot) {
   const Vector2d tip = x.segment<2>(U::kTipX);
   const Vector2d foot = x.segment<2>(U::kFootX);
@@ -35,25 +55,28 @@ Plain plain_at(const ShadowUnknowns& x, const Vector2d& from_foot) {
     const Vector2d line = tip - outline.touch[side];
     const double way = std::clamp(q.dot(line) / line.squaredNorm(), 0.0, 1.0);
     const double sigma = std::hypot(x[U::kSoftness] * way, kEdges.blur_m);
-    const double d = (q.dot(outline.inward[side]) + x[U::kRadius]) / sigma;
-    const double density = std::exp(-0.5 * d * d) / (sigma * std::sqrt(2.0 * std::numbers::pi));
-    hidden += 0.5 * std::erfc(-d / std::sqrt(2.0));
+    const double d = q.dot(outline.inward[side]) + x[U::kRadius];
+    double density = 0.0;
+    hidden += hidden_by_edge(d, sigma, x[U::kSoftness] * way, density);
     // An edge that is held at the base and at the tip.
     by_edge.segment<2>(U::kTipX) -= density * way * outline.inward[side];
     by_edge.segment<2>(U::kFootX) -= density * (1.0 - way) * outline.inward[side];
     by_edge[U::kRadius] += density * (1.0 - way);
-    by_edge[U::kSoftness] -= density * d * x[U::kSoftness] * way * way / sigma;
+    by_edge[U::kSoftness] -= density * d * x[U::kSoftness] * way * way / (sigma * sigma);
   }
   hidden = std::max(0.0, hidden);
-  // The light that is left, as a camera codes it: by its square root.
-  const double contrast = x[U::kDark] / x[U::kLevel];
-  const double left = 1.0 - hidden * (1.0 - (1.0 - contrast) * (1.0 - contrast));
-  const double coded = (1.0 - std::sqrt(left)) / contrast;
-  const double slope = (1.0 - (1.0 - contrast) * (1.0 - contrast)) / (2.0 * contrast * std::sqrt(left));
-  Plain plain{x[U::kLevel] + x.segment<2>(U::kSlopeX).dot(from_foot) - x[U::kDark] * coded, ShadowUnknowns::Zero()};
-  if (hidden > 0.0) plain.by = -x[U::kDark] * slope * by_edge;
-  plain.by[U::kDark] = -coded;
-  plain.by[U::kLevel] = 1.0;
+  const double level = x[U::kLevel];
+  const double dark = x[U::kDark];
+  Plain plain{coded(level, dark, hidden) + x.segment<2>(U::kSlopeX).dot(from_foot), ShadowUnknowns::Zero()};
+  constexpr double kStep = 1e-4;
+  const auto rise = [&](double by_level, double by_dark, double by_hidden) {
+    return (coded(level + kStep * by_level, dark + kStep * by_dark, hidden + kStep * by_hidden) -
+            coded(level - kStep * by_level, dark - kStep * by_dark, hidden - kStep * by_hidden)) /
+           (2.0 * kStep);
+  };
+  if (hidden > 0.0) plain.by = rise(0.0, 0.0, 1.0) * by_edge;
+  plain.by[U::kDark] = rise(0.0, 1.0, 0.0);
+  plain.by[U::kLevel] = rise(1.0, 0.0, 0.0);
   plain.by.segment<2>(U::kSlopeX) = from_foot;
   return plain;
 }
@@ -64,6 +87,7 @@ ShadowSums plain_sums(const ShadowUnknowns& x, const ShadowSamples& samples) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(samples.count); ++i) {
     const Plain at = plain_at(x, {static_cast<double>(samples.x[i]), static_cast<double>(samples.y[i])});
     const double residual = static_cast<double>(samples.value[i]) - at.value;
+    if (samples.clipped[i] > 0.0F && residual < 0.0) continue;
     const double weight = 1.0 / (1.0 + residual * residual / (scale * scale));
     sums.H += weight * at.by * at.by.transpose();
     sums.g += weight * residual * at.by;
@@ -88,7 +112,8 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
     while (samples.count < count) {
       const Vector2d at =
           0.5 * (1.0 + unit(random)) * (tip - kEdges.foot) + 0.02 * Vector2d(unit(random), unit(random));
-      samples.add(at.cast<float>(), static_cast<float>(plain_at(x, at).value + 4.0 * unit(random)), 0);
+      samples.add(at.cast<float>(), static_cast<float>(plain_at(x, at).value + 4.0 * unit(random)),
+                  samples.count % 5 == 0, 0);
     }
     const ShadowBrightness model(x, kEdges, step);
     ASSERT_TRUE(model.valid());
