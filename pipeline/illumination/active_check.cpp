@@ -1,20 +1,36 @@
 #include "pipeline/illumination/active_check.h"
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 namespace cgsr::illumination {
 namespace {
 
 constexpr int kAcross = 24;  // places of the board at which brightness is read
 constexpr int kAlong = 12;
 
-/// \return whether the image has the camera's size; then its brightness is in `grey`.
+/// A grey image's level for each of YUYV's, whose black is 16 and white 235 (BT.601).
+constexpr std::array<std::uint8_t, 256> grey_of_yuyv() {
+  std::array<std::uint8_t, 256> grey{};
+  for (int level = 0; level < 256; ++level) {
+    const int stretched = ((level - 16) * 255 + 109) / 219;
+    grey[static_cast<std::size_t>(level)] = static_cast<std::uint8_t>(std::clamp(stretched, 0, 255));
+  }
+  return grey;
+}
+
+/// \return whether the image has the camera's size; then its brightness is in `grey`, from black at 0 to white at 255.
 bool take_brightness(const ImageView& image, const geometry::Camera& camera, std::vector<std::uint8_t>& grey) {
   if (image.empty() || image.format == PixelFormat::kBgr24) return false;
   if (image.width_px != camera.width_px || image.height_px != camera.height_px) return false;
+  static constexpr auto kGreyOfYuyv = grey_of_yuyv();
+  const bool is_yuyv = image.format == PixelFormat::kYuyv;
   const int step = bytes_per_pixel(image.format);
   std::uint8_t* out = grey.data();
   for (int y = 0; y < image.height_px; ++y) {
     const std::uint8_t* row = image.row(y);
-    for (int x = 0; x < image.width_px; ++x) *out++ = row[step * x];
+    for (int x = 0; x < image.width_px; ++x) *out++ = is_yuyv ? kGreyOfYuyv[row[step * x]] : row[x];
   }
   return true;
 }

@@ -237,7 +237,9 @@ void LampFilter::correct_tracks(const ProbeObservation& observation, const Pose&
     }
     bool expected = false;
     for (int i = 0; i < board_.probes; ++i) {
-      if (((observation.missing | observation.saturated) & (1 << i)) != 0) continue;
+      const bool is_blinded =
+          (observation.saturated & (1 << i)) != 0 && observation.probe[static_cast<std::size_t>(i)].count == 0;
+      if ((observation.missing & (1 << i)) != 0 || is_blinded) continue;
       expected = expected || should_show(track, static_cast<std::size_t>(i), pose.X_WR, observation.registration.X_BC);
     }
     if (expected) ++track.known.missed;

@@ -13,13 +13,13 @@ namespace cgsr::illumination {
 ///   level = zero + k light^(1 / kLightPower)
 struct LightLevels {
   double zero = 0.0;  ///< below what is black; lower still in a difference of two images, of which neither is dark.
-  double saturated = 255.0;  ///< from this level on a grey image holds no more light.
+  double saturated = 255.0;  ///< from this level on a grey image holds no more light; YUYV is asked for its colours.
 };
 inline constexpr double kLightPower = 2.4;
 
 constexpr LightLevels light_levels_of(PixelFormat format) {
   constexpr double kOffset = 0.055;  // of the range from black to white
-  return format == PixelFormat::kYuyv ? LightLevels{16.0 - kOffset * 219.0, 233.5}
+  return format == PixelFormat::kYuyv ? LightLevels{16.0 - kOffset * 219.0, 255.0}
                                       : LightLevels{-kOffset * 255.0, 253.5};
 }
 
@@ -62,9 +62,9 @@ class LumaView {
   }
 
   /// Can one of the four neighbours hold no more light, in any of its colours? The light of a warm lamp is too much for red before it is for the brightness.
-  /// \param level  at(x, y): of a place as dark as a shadow the other neighbours tell enough.
+  /// \param level  at(x, y): a level below kMinClippedLevel is that of its unclipped neighbours.
   [[nodiscard]] bool is_clipped(double x, double y, float level) const {
-    if (level < kLeastClipped) return false;
+    if (level < kMinClippedLevel) return false;
     const auto column = static_cast<std::ptrdiff_t>(x);
     const std::uint8_t* upper = data_ + static_cast<std::ptrdiff_t>(y) * stride_;
     for (const std::uint8_t* row : {upper, upper + stride_}) {
@@ -85,7 +85,7 @@ class LumaView {
     return 1.164F * (static_cast<float>(level) - 16.0F) + most >= kClippedColor;
   }
 
-  static constexpr float kLeastClipped = 170.0F;
+  static constexpr float kMinClippedLevel = 170.0F;
   static constexpr float kClippedColor = 250.0F;  // of 255: chroma is shared by two pixels, and noisy
 
   const std::uint8_t* data_;

@@ -46,10 +46,11 @@ struct ProbeShadow {
   Eigen::Matrix<double, 2, 6> J_pose = Eigen::Matrix<double, 2, 6>::Zero();
   int lines = 0;  ///< 2: the tip is known; 1: the plane through lamp, tip and this line.
   std::array<bool, 2> line_seen{};
-  double contrast = 0.0;  ///< grey levels.
-  double level = 0.0;     ///< of the board beside it: more than the image holds where the board is too bright for it.
-  double support = 0.0;   ///< share of places along the lines that show it.
-  double rms = 0.0;       ///< grey levels that the model does not explain.
+  double contrast = 0.0;       ///< grey levels.
+  double seen_contrast = 0.0;  ///< of it, what the image shows: less where the board is clipped.
+  double level = 0.0;          ///< of the board beside it: more than the image holds where the board is clipped.
+  double support = 0.0;        ///< share of places along the lines that show it.
+  double rms = 0.0;            ///< grey levels that the model does not explain.
   /// Of the lamp, as soft as the shadow's edges are; and its standard deviation.
   double lamp_radius_m = 0.0;
   double lamp_radius_sigma_m = 0.0;

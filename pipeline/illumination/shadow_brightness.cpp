@@ -18,11 +18,11 @@ constexpr float kMostContrast = 0.98F;
 
 constexpr auto kPower = static_cast<float>(kLightPower);
 
-/// \return light^(1 / 2.4), for light of 0.0025 to 1: the root r of r^6 = y^5 with y^2 = light, by a parabola and a step of Newton's from there.
+/// \return light^(1 / 2.4) to 0.13 % for light from 0.00008 to 1: the root r of r^6 = y^5 with y^2 = light, by a step of Newton's.
 Lane coded_level(const Lane& light) {
   const Lane y = light.sqrt();
-  const Lane less = y - 1.0F;
-  const Lane r = 1.0F + less * (5.0F / 6.0F - 0.126F * less);
+  const Lane z = y.sqrt();
+  const Lane r = z * (0.095F + z * (1.27F - 0.365F * z));
   const Lane r3 = r * r * r;
   return r * (5.0F + light * light * y / (r3 * r3)) * (1.0F / 6.0F);
 }
@@ -32,8 +32,8 @@ static_assert(kLightPower == 2.4);
 Lane weights(const Lane& residual, float scale, const ShadowSamples& samples, int first) {
   const Lane relative = residual * (1.0F / scale);
   const Lane clipped = Eigen::Map<const Lane, Eigen::Aligned16>(samples.clipped.data() + first);
-  const auto tells_nothing = clipped > 0.5F && residual < 0.0F;
-  Lane robust = tells_nothing.select(0.0F, 1.0F / (1.0F + relative * relative));
+  const auto uninformative = clipped > 0.5F && residual < 0.0F;
+  Lane robust = uninformative.select(0.0F, 1.0F / (1.0F + relative * relative));
   for (int k = samples.count - first; k < kLane; ++k) robust[k] = 0.0F;
   return robust;
 }
@@ -66,6 +66,7 @@ ShadowBrightness::ShadowBrightness(const ShadowUnknowns& x, const ShadowEdges& e
   penumbra_ = static_cast<float>(x[kSoftness]);
   const auto lit = static_cast<float>(std::max(1.0, x[kLevel] - edges.zero));
   contrast_ = std::clamp(dark_ / lit, kLeastContrast, kMostContrast);
+  is_clamped_ = contrast_ != dark_ / lit;
   in_shadow_ = std::pow(1.0F - contrast_, kPower);
 }
 
@@ -77,7 +78,7 @@ void ShadowBrightness::code(const Lane& hidden, Lane& coded, Lane& slope, Lane& 
   coded = (1.0F - level) * (1.0F / contrast_);
   const Lane steep = level / light;
   slope = ((1.0F - in_shadow_) / (kPower * contrast_)) * steep;
-  by_contrast = (in_shadow_ / (1.0F - contrast_)) * hidden * steep;
+  by_contrast = is_clamped_ ? coded : ((in_shadow_ / (1.0F - contrast_)) * hidden * steep).eval();
 }
 
 ShadowBrightness::Value ShadowBrightness::at(const Eigen::Vector2f& from_foot) const {

@@ -56,8 +56,8 @@ struct ShadowSums {
 };
 
 /// The brightness of the board about a probe, with the shadow that ten unknowns describe: both lines are tangents from the shadow of the tip
-/// to the base, and the brightness between them is less by the contrast. Levels are compared as the camera coded the light (LightLevels). Of a place where the image holds no more
-/// light only that is known: it is as bright, or brighter. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
+/// to the base, and the brightness between them is less by the contrast. Levels are compared as the camera coded the light (LightLevels). A place where the image holds no more
+/// light is a lower bound of the board's brightness. Ours; the dissertation (Alg. 5.1) takes the lines from an edge image.
 class ShadowBrightness {
  public:
   /// Where the shadow of the tip falls, foot and radius of the base, the shadow's contrast, and the board's brightness beside it, a plane about
@@ -93,6 +93,7 @@ class ShadowBrightness {
   std::array<Line, 2> line_{};
   float in_shadow_ = 0.0F;             ///< of the light beside the shadow, what is left in it.
   float contrast_ = 0.0F;              ///< of the level beside it, above LightLevels::zero.
+  bool is_clamped_ = false;            ///< the contrast: the curve stays as it is for a little more of it.
   float off_x_ = 0.0F, off_y_ = 0.0F;  // of the foot from where it was measured
   float radius_ = 0.0F;
   float dark_ = 0.0F;

@@ -37,9 +37,9 @@ constexpr double kMostChange = 2.0;     // a factor of the softness in one step
 constexpr double kLeastVariance = 0.3;  // grey levels squared
 constexpr double kOverClipped =
     0.25;  // so much brighter than the image holds a board is likely to be, with that standard deviation
-constexpr double kLeastDarkSigmas = 6.0;  // a contrast, to be one
-// What is left of edges whose bright half is clipped hangs on the penumbra's exact shape, and errs alike along a line. The variance where all samples are, in units of
-// what they say themselves; over tuning homes (31 images with clipped boards) the 99 % bound holds 24 without it and 27 with it.
+constexpr double kMinDarkSigmas = 6.0;  // of a contrast
+// Added to a clipped fit's covariance, in its own units and times the share of clipped samples: what is left of the edges hangs on the penumbra's exact shape,
+// and errs alike along a line. Over 24 tuning homes it holds 27 of 31 such answers within the 99 % bound, 24 without it.
 constexpr double kClippedVariance = 8.0;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
@@ -142,8 +142,8 @@ void ShadowFit::add_known(const ShadowUnknowns& x, const ShadowStart& start, Sha
   add(kSoftness, softness_sigma * softness_sigma, softness_per_radius_ * parameters_.lamp_radius_m - x[kSoftness]);
   sums.H(kDark, kDark) += 1e-6;
   if (samples_.clipped_count > 0) {
-    const double over = kOverClipped * (start.level - edges_.zero);
-    add(kLevel, over * over, start.level + over - x[kLevel]);
+    const double over = kOverClipped * (start.seen_level - edges_.zero);
+    add(kLevel, over * over, start.seen_level + over - x[kLevel]);
   }
 }
 
@@ -191,19 +191,26 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
   return true;
 }
 
-bool ShadowFit::may_be_shadow(const ShadowUnknowns& x) const {
+double ShadowFit::seen_contrast(const ShadowUnknowns& x, const ShadowStart& start) const {
+  return samples_.clipped_count == 0 ? x[kDark] : x[kDark] - std::max(0.0, x[kLevel] - start.seen_level);
+}
+
+bool ShadowFit::may_be_shadow(const ShadowUnknowns& x, double seen_contrast) const {
   const double distance = (x.head<2>() - probe_.foot_B).norm();
   const double flat = (x.head<2>() - probe_.p_BA.head<2>()).norm();
   return distance >= 1.15 * probe_.radius_m &&
          flat <= probe_.p_BA.z() * std::tan(parameters_.max_angle_deg * kRadPerDeg) &&
-         x[kDark] >= parameters_.min_contrast && x[kDark] >= parameters_.min_contrast_ratio * x[kLevel];
+         seen_contrast >= parameters_.min_contrast && seen_contrast >= parameters_.min_contrast_ratio * x[kLevel];
 }
 
-// However bright the board is, which a clipped image leaves open.
-bool ShadowFit::is_dark(const ShadowUnknowns& x, const ShadowNormal& covariance) {
-  const double shared = covariance(kDark, kLevel);
-  const double variance = covariance(kDark, kDark) - shared * shared / covariance(kLevel, kLevel);
-  return x[kDark] >= kLeastDarkSigmas * std::sqrt(variance);
+// How bright a clipped board is only its prior says: there the contrast counts at the level that was found.
+bool ShadowFit::is_dark(double seen_contrast, const ShadowNormal& covariance) const {
+  double variance = covariance(kDark, kDark);
+  if (samples_.clipped_count > 0) {
+    const double shared = covariance(kDark, kLevel);
+    variance -= shared * shared / covariance(kLevel, kLevel);
+  }
+  return seen_contrast >= kMinDarkSigmas * std::sqrt(variance);
 }
 
 // Do the places along the lines show it, each by itself?
@@ -217,8 +224,9 @@ bool ShadowFit::is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const {
   for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
     const auto brightness = model.at({samples_.x[i], samples_.y[i]});
     const float expected = brightness.plain - static_cast<float>(x[kDark]) * brightness.hidden;
-    const bool told = samples_.clipped[i] == 0.0F || samples_.value[i] > expected;
-    const float missing = brightness.plain - (told ? samples_.value[i] : expected);
+    // A lower bound that holds agrees; what the place shows is up to its other samples.
+    const bool agrees = samples_.clipped[i] != 0.0F && samples_.value[i] < expected;
+    const float missing = brightness.plain - (agrees ? expected : samples_.value[i]);
     Place& place = places[static_cast<std::size_t>(samples_.place[i])];
     place.n += 1.0F;
     place.h += brightness.hidden;
@@ -245,7 +253,7 @@ bool ShadowFit::is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const {
     shadow.lines += enough ? 1 : 0;
   }
   shadow.support = static_cast<double>(shown[0] + shown[1]) / std::max(1, asked[0] + asked[1]);
-  return shadow.lines > 0 && shadow.rms <= std::max(4.0, 0.35 * shadow.contrast);
+  return shadow.lines > 0 && shadow.rms <= std::max(4.0, 0.35 * shadow.seen_contrast);
 }
 
 bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
@@ -255,10 +263,12 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   Fitted fitted;
   fitted.x << start.tip_shadow, probe_.foot_B, probe_.radius_m, start.contrast, start.level, 0.0, 0.0,
       softness_per_radius_ * std::clamp(radius_m, kLeastRadius_m, kMostRadius_m);
-  if (!settle(image, view, behind, start, fitted) || !may_be_shadow(fitted.x)) return false;
+  if (!settle(image, view, behind, start, fitted)) return false;
   const ShadowUnknowns& x = fitted.x;
+  shadow.seen_contrast = seen_contrast(x, start);
+  if (!may_be_shadow(x, shadow.seen_contrast)) return false;
   const ShadowNormal covariance = fitted.information.inverse();
-  if (!with_tip && !is_dark(x, covariance)) return false;
+  if (!with_tip && !is_dark(shadow.seen_contrast, covariance)) return false;
   const Vector3d p_BS(x[kTipX], x[kTipY], 0.0);
   const auto d = view.derivative(p_BS);
   if (!d.in_front) return false;
@@ -266,15 +276,15 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   shadow.level = x[kLevel];
   shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
-  const double clipped = static_cast<double>(samples_.clipped_count) / samples_.count;
-  shadow.covariance = (1.0 + kClippedVariance * clipped) * covariance.topLeftCorner<2, 2>();
+  const double inflation = 1.0 + kClippedVariance * samples_.clipped_count / samples_.count;
+  shadow.covariance = inflation * covariance.topLeftCorner<2, 2>();
   shadow.lamp_radius_m = x[kSoftness] / softness_per_radius_;
-  shadow.lamp_radius_sigma_m = std::sqrt(covariance(kSoftness, kSoftness)) / softness_per_radius_;
+  shadow.lamp_radius_sigma_m = std::sqrt(inflation * covariance(kSoftness, kSoftness)) / softness_per_radius_;
   shadow.J_pose = -d.J_point.leftCols<2>().inverse() * view.pose_jacobian(d, p_BS);
   if (!with_tip) return is_shown(x, shadow);
   shadow.lines = 2;
   shadow.support = 1.0;
-  return shadow.rms < std::max(1.8, 0.1 * shadow.contrast) &&
+  return shadow.rms < std::max(1.8, 0.1 * shadow.seen_contrast) &&
          (shadow.p_BS - start.tip_shadow).norm() < 3.0 * start.known_m;
 }
 

@@ -18,12 +18,13 @@ struct ShadowStart {
   Eigen::Vector2d tip_shadow = Eigen::Vector2d::Zero();  ///< on the board.
   double contrast = 0.0;                                 ///< grey levels.
   double level = 0.0;                                    ///< of the board at the foot.
+  double seen_level = 0.0;                               ///< likewise, as the image holds it.
   double lamp_radius_m = 0.0;                            ///< 0: what the parameters say.
   double known_m = 0.0;  ///< how well the tip is known beforehand; 0: not, and the tip itself is not looked at.
 };
 
 /// Fits the shadow of a probe to the brightness along both of its lines: the shadow of the tip, the foot and radius of the base within what
-/// calibration leaves open, the shadow's contrast, how soft its edges are and the board's brightness, a plane; where the image holds too little light, as far as the dark side of the edges tells it. The softness tells the lamp's
+/// calibration leaves open, the shadow's contrast, how soft its edges are and the board's brightness, a plane; where the image is clipped, as far as the dark side of the edges tells it. The softness tells the lamp's
 /// radius; beforehand it is known to the parameters' standard deviation. No edge image is needed, all of a line counts, and a line that is half hidden is completed.
 /// Ours; the dissertation finds the lines by Canny and Hough (Alg. 5.1).
 ///
@@ -61,8 +62,9 @@ class ShadowFit {
   void add_known(const ShadowUnknowns& x, const ShadowStart& start, ShadowSums& sums) const;
   [[nodiscard]] bool settle(const LumaView& image, const BoardView& view,
                             const std::array<Outline, kMostProbes>& behind, const ShadowStart& start, Fitted& fitted);
-  [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x) const;
-  [[nodiscard]] static bool is_dark(const ShadowUnknowns& x, const ShadowNormal& covariance);
+  [[nodiscard]] double seen_contrast(const ShadowUnknowns& x, const ShadowStart& start) const;
+  [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x, double seen_contrast) const;
+  [[nodiscard]] bool is_dark(double seen_contrast, const ShadowNormal& covariance) const;
   [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
 

@@ -269,7 +269,7 @@ ShadowStart ShadowFinder::start_of(const Candidate& candidate) const {
   start.tip_shadow = probe_.foot_B +
                      length_m_[static_cast<std::size_t>(candidate.length)] * Vector2d(std::cos(angle), std::sin(angle));
   start.contrast = candidate.contrast;
-  start.level = plane_[0];
+  start.level = start.seen_level = plane_[0];
   return start;
 }
 
@@ -349,7 +349,8 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
   ShadowStart again;
   again.tip_shadow = shadow.p_BS;
   again.contrast = shadow.contrast;
-  again.level = plane_[0];
+  again.level = shadow.level;
+  again.seen_level = plane_[0];
   again.lamp_radius_m = shadow.lamp_radius_m;
   again.known_m = std::max(kLeastKnown_m, along_m);
   ProbeShadow with_tip;
@@ -361,8 +362,8 @@ void ShadowFinder::look_for_tip(const LumaView& image, const BoardView& view, Pr
 }
 
 // How much darker than the plane it is where so much of the lamp is hidden. A plane that was clipped is not as bright as the board.
-float ShadowFinder::darkness_seen(const ProbeShadow& shadow, float hidden) const {
-  const double clipped = std::max(0.0, shadow.level - plane_[0]);
+float ShadowFinder::seen_darkness(const ProbeShadow& shadow, float hidden) {
+  const double clipped = shadow.contrast - shadow.seen_contrast;
   return static_cast<float>(std::max(0.0, shadow.contrast * static_cast<double>(hidden) - clipped));
 }
 
@@ -376,7 +377,7 @@ bool ShadowFinder::is_filled(const ProbeShadow& shadow) const {
       if (valid_[r][k] == 0.0F) continue;
       if (hidden_share(grid_[r * kRings + k], outline, kShapeBlur_m) < 0.9F) continue;
       ++asked;
-      if (value_[r][k] < -0.5F * darkness_seen(shadow, 1.0F)) ++dark;
+      if (value_[r][k] < -0.5F * seen_darkness(shadow, 1.0F)) ++dark;
     }
   }
   return dark >= kLeastFilled * asked;
@@ -389,7 +390,7 @@ void ShadowFinder::take_away(const ProbeShadow& shadow) {
       const auto r = static_cast<std::size_t>(ray);
       const auto k = static_cast<std::size_t>(ring);
       const float share = hidden_share(grid_[static_cast<std::size_t>(ray * kRings + ring)], outline, kShapeBlur_m);
-      value_[r][k] += valid_[r][k] * darkness_seen(shadow, share);
+      value_[r][k] += valid_[r][k] * seen_darkness(shadow, share);
     }
   }
 }
@@ -407,7 +408,7 @@ bool ShadowFinder::fit_either(const LumaView& image, const BoardView& view, cons
 // A fit that stopped at half the length leaves more than the board's own noise, and than a shadow's edges differ from the model's.
 bool ShadowFinder::is_explained(const ProbeShadow& shadow) const {
   const double noise = kMostNoise * noise_;
-  const double unlike = kMostUnlike * shadow.contrast;
+  const double unlike = kMostUnlike * shadow.seen_contrast;
   return shadow.rms * shadow.rms <= noise * noise + unlike * unlike;
 }
 
@@ -429,7 +430,7 @@ ShadowFinder::Found ShadowFinder::find(const LumaView& image, const geometry::Po
     if (candidate.ray < 0 || static_cast<double>(candidate.score) < kLeastScore ||
         candidate.contrast < 0.5 * parameters_.min_contrast ||
         candidate.contrast < 0.5 * parameters_.min_contrast_ratio * plane_[0] ||
-        (found.count > 0 && candidate.contrast < kLeastOfFirst * found.shadow[0].contrast)) {
+        (found.count > 0 && candidate.contrast < kLeastOfFirst * found.shadow[0].seen_contrast)) {
       break;
     }
     tried[static_cast<std::size_t>(tried_count++)] = candidate.ray;

@@ -15,7 +15,7 @@
 namespace cgsr::illumination {
 
 inline constexpr double kMostSaturated =
-    0.1;  ///< of the places on the board that were looked at: more have a name of their own.
+    0.1;  ///< of the places on the board that were looked at; above it: ObservationStatus::kSaturated if there is no shadow.
 
 /// Finds the shadows of one probe (Alg. 5.1). Where the dissertation takes Canny's edges and Hough's lines, and then the point where two of them
 /// meet, this looks for the meeting point itself: the two lines of a cone's shadow are the tangents from the shadow of its tip to its base, so the
@@ -87,7 +87,7 @@ class ShadowFinder {
                                 ProbeShadow& shadow);
   [[nodiscard]] bool is_explained(const ProbeShadow& shadow) const;
   [[nodiscard]] bool is_filled(const ProbeShadow& shadow) const;
-  [[nodiscard]] float darkness_seen(const ProbeShadow& shadow, float hidden) const;
+  [[nodiscard]] static float seen_darkness(const ProbeShadow& shadow, float hidden);
   void take_away(const ProbeShadow& shadow);
   [[nodiscard]] float hidden_share(const Eigen::Vector2d& from_foot, const Outline& outline, double blur_m) const;
 

@@ -29,7 +29,7 @@ class SoftStep {
     float share;    ///< 0 far outside, 1 far inside.
     float density;  ///< its derivative.
   };
-  /// \param x  in standard deviations from the middle of an edge that the image alone blurs.
+  /// \param x  in standard deviations from the middle of an edge whose light is taken for normally distributed, as what the image blurs is.
   [[nodiscard]] Value at(float x) const {
     const float place = std::clamp(x * kPerUnit + kZero, 0.0F, static_cast<float>(kEntries - 2));
     const int i = static_cast<int>(place);
@@ -49,7 +49,7 @@ class SoftStep {
     }
   }
   /// Of an edge that lamp and image soften together.
-  /// \param lamp  the lamp's share of the variance. Both curves mixed by its square have the variance and the kurtosis of one after the other.
+  /// \param lamp  the lamp's share of the variance. Both curves mixed by its square have the variance and the kurtosis of their convolution.
   [[nodiscard]] Value at(float x, float lamp) const {
     const float place = std::clamp(x * kPerUnit + kZero, 0.0F, static_cast<float>(kEntries - 2));
     return mixed(place, lamp * lamp);
@@ -68,15 +68,15 @@ class SoftStep {
  private:
   struct Entry {
     float gauss;
-    float disc_more;  // than the former
+    float disc_minus_gauss;  // than the former
   };
 
   [[nodiscard]] Value mixed(float place, float mix) const {
     const int i = static_cast<int>(place);
     const Entry& a = table_[static_cast<std::size_t>(i)];
     const Entry& b = table_[static_cast<std::size_t>(i) + 1];
-    const float low = a.gauss + mix * a.disc_more;
-    const float rise = b.gauss + mix * b.disc_more - low;
+    const float low = a.gauss + mix * a.disc_minus_gauss;
+    const float rise = b.gauss + mix * b.disc_minus_gauss - low;
     return {low + (place - static_cast<float>(i)) * rise, rise * kPerUnit};
   }
 

@@ -105,15 +105,17 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
     ShadowUnknowns x;
     const double way = 3.1 * unit(random);
     const Vector2d tip = kEdges.foot + (0.07 + 0.03 * unit(random)) * Vector2d(std::cos(way), std::sin(way));
-    x << tip, kEdges.foot + Vector2d(0.0005, -0.0003), 0.02, 30.0 + 20.0 * unit(random), 150.0, 40.0, -60.0,
-        0.0012 + 0.0001 * trial;
+    const double dark = trial % 2 == 0 ? 30.0 + 20.0 * unit(random) : 100.0 + 45.0 * unit(random);
+    x << tip, kEdges.foot + Vector2d(0.0005, -0.0003), 0.02, dark, 150.0, 40.0, -60.0, 0.0012 + 0.0001 * trial;
     ShadowSamples samples;
     const int count = 97 + trial % 4;  // not whole lanes alone
     while (samples.count < count) {
       const Vector2d at =
           0.5 * (1.0 + unit(random)) * (tip - kEdges.foot) + 0.02 * Vector2d(unit(random), unit(random));
-      samples.add(at.cast<float>(), static_cast<float>(plain_at(x, at).value + 4.0 * unit(random)),
-                  samples.count % 5 == 0, 0);
+      const bool is_clipped = samples.count % 5 == 0;
+      double noise = 4.0 * unit(random);
+      if (is_clipped) noise += std::copysign(1.0, noise);  // which side of the model it is on decides whether it counts
+      samples.add(at.cast<float>(), static_cast<float>(plain_at(x, at).value + noise), is_clipped, 0);
     }
     const ShadowBrightness model(x, kEdges, step);
     ASSERT_TRUE(model.valid());
@@ -129,7 +131,7 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
       }
       EXPECT_NEAR(fast.g[a], plain.g[a], share(a) * std::sqrt(plain.H(a, a) * plain.squares)) << trial << ' ' << a;
     }
-    EXPECT_NEAR(fast.squares, plain.squares, 0.01 * plain.squares);
+    EXPECT_NEAR(fast.squares, plain.squares, 0.02 * plain.squares);
     EXPECT_NEAR(fast.weights, plain.weights, 0.01 * plain.weights);
   }
 }
