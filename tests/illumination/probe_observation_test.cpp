@@ -191,11 +191,14 @@ TEST(ProbeObservation, WhatIsNoShadowOfAProbeIsNotTakenForOne) {
   };
   Drawing texture;
   texture.darker = [](const Vector2d& p) { return 4.0 + 4.0 * std::sin(300.0 * p.x()) * std::sin(170.0 * p.y()); };
-  for (const Drawing& drawing : {plain, dirt, hand, texture}) {
-    const auto image = draw(board, X_BC, drawing);
-    ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
-    const auto seen = observer.observe(image.view());
-    EXPECT_EQ(seen.probe[0].count + seen.probe[1].count, 0) << to_string(seen.status);
+  for (Drawing drawing : {plain, dirt, hand, texture}) {
+    for (const double level : {140.0, 258.0}) {  // and where all but them is clipped
+      drawing.board_level = level;
+      const auto image = draw(board, X_BC, drawing);
+      ProbeObserver observer(board, shipped_probes(), kLampHeight_m);
+      const auto seen = observer.observe(image.view());
+      EXPECT_EQ(seen.probe[0].count + seen.probe[1].count, 0) << level << ' ' << to_string(seen.status);
+    }
   }
 }
 

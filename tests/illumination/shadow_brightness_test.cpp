@@ -105,7 +105,8 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
     ShadowUnknowns x;
     const double way = 3.1 * unit(random);
     const Vector2d tip = kEdges.foot + (0.07 + 0.03 * unit(random)) * Vector2d(std::cos(way), std::sin(way));
-    const double dark = trial % 2 == 0 ? 30.0 + 20.0 * unit(random) : 100.0 + 45.0 * unit(random);
+    const bool is_deep = trial % 2 != 0;
+    const double dark = !is_deep ? 30.0 + 20.0 * unit(random) : 100.0 + 45.0 * unit(random);
     x << tip, kEdges.foot + Vector2d(0.0005, -0.0003), 0.02, dark, 150.0, 40.0, -60.0, 0.0012 + 0.0001 * trial;
     ShadowSamples samples;
     const int count = 97 + trial % 4;  // not whole lanes alone
@@ -131,7 +132,7 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
       }
       EXPECT_NEAR(fast.g[a], plain.g[a], share(a) * std::sqrt(plain.H(a, a) * plain.squares)) << trial << ' ' << a;
     }
-    EXPECT_NEAR(fast.squares, plain.squares, 0.02 * plain.squares);
+    EXPECT_NEAR(fast.squares, plain.squares, (is_deep ? 0.02 : 0.01) * plain.squares);
     EXPECT_NEAR(fast.weights, plain.weights, 0.01 * plain.weights);
   }
 }
