@@ -34,8 +34,9 @@ TrackedObjects TrackStage::update(WorkBudget& budget, const ImageView& image, co
   const View* const now = view.within(Duration::zero());
   if (now != nullptr && now->reduced) {
     const auto* const found = matches.within(kMaxMatchesAge);
-    last_.tracks.front().object =
-        tracker.track(image, *now->reduced, found != nullptr ? *found : color::SearchResult{}, budget);
+    color::SearchResult known = found != nullptr ? *found : color::SearchResult{};
+    known.of_this_image = matches.within(Duration::zero()) != nullptr;
+    last_.tracks.front().object = tracker.track(image, *now->reduced, known, budget);
   }
   last_.next_search = tracker.search_size();
   return last_;

@@ -42,25 +42,25 @@ TEST(Presence, IsFiniteForAnyMeasures) {
 TEST(Presence, EndsWithTheFirstImageThatHasNoSignOfTheObject) {
   Presence presence{PresenceParameters{}};
   presence.confirm();
-  presence.add(kSeen);
+  presence.add(presence.log_odds(kSeen));
   EXPECT_TRUE(presence.believed());
-  presence.add(kGone);
+  presence.add(presence.log_odds(kGone));
   EXPECT_FALSE(presence.believed());
 }
 
 TEST(Presence, OutlastsOneWeakImageButNotMany) {
   Presence presence{PresenceParameters{}};
   presence.confirm();
-  presence.add(kWeak);
+  presence.add(presence.log_odds(kWeak));
   EXPECT_TRUE(presence.believed());
-  for (int i = 0; i < 8; ++i) presence.add(kWeak);
+  for (int i = 0; i < 8; ++i) presence.add(presence.log_odds(kWeak));
   EXPECT_FALSE(presence.believed());
 }
 
 TEST(Presence, ComesBackWithAClearImageAfterAnyNumberWithoutTheObject) {
   Presence presence{PresenceParameters{}};
-  for (int i = 0; i < 100; ++i) presence.add(kGone);
-  presence.add(kSeen);
+  for (int i = 0; i < 100; ++i) presence.add(presence.log_odds(kGone));
+  presence.add(presence.log_odds(kSeen));
   EXPECT_TRUE(presence.believed());
   presence.deny();
   EXPECT_FALSE(presence.believed());

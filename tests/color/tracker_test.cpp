@@ -229,15 +229,27 @@ TEST(Tracker, LooksAroundThePlaceWhereItWasLost) {
   }
 }
 
-// With work for one of them in each image all places around have their turn, on either side.
+// Its recent colours tell where to look in the whole image, though no search does.
+TEST(Tracker, LooksWhereItsColorsStandOut) {
+  Bench bench;
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(moved(20, 20)).found) << i;
+  for (int i = 0; i < 12; ++i) ASSERT_FALSE(bench.look_nearby(room(nullptr)).found) << i;
+  const Box place = moved(250, 160);
+  TrackedObject found;
+  for (int i = 0; i < 4 && !found.found; ++i) found = bench.look_nearby(room(&place));
+  ASSERT_TRUE(found.found);
+  EXPECT_GT(overlap(found.box, place), 0.6);
+}
+
+// With work for one place in each image all 25 around have their turn, on either side: every second image is theirs.
 TEST(Tracker, LooksAtEveryPlaceAroundWithLittleWork) {
   for (const Box& place : {moved(kFirst.x - 75, kFirst.y - 90), moved(kFirst.x + 85, kFirst.y - 20),
-                           moved(kFirst.x - 75, kFirst.y + 20)}) {
+                           moved(kFirst.x + 42, kFirst.y), moved(kFirst.x - 75, kFirst.y + 20)}) {
     Bench bench;
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.see(kFirst).found) << i;
     for (int i = 0; i < 8; ++i) ASSERT_FALSE(bench.look_nearby(room(nullptr)).found) << i;
     TrackedObject found;
-    for (int i = 0; i < 25 && !found.found; ++i) {
+    for (int i = 0; i < 50 && !found.found; ++i) {
       CountedBudget budget(2);  // what may be it, and one place
       found = bench.look_nearby(room(&place), budget);
     }

@@ -88,8 +88,9 @@ struct SearchResult {
   int count = 0;
   bool exact =
       true;  ///< false: the budget ended the search; what is reported is the best seen, not known to be the best there is.
-  int windows = 0;   ///< there were to compare (positions times sizes).
-  int examined = 0;  ///< of those had their histogram counted: the measure of work.
+  bool of_this_image = true;  ///< false: it was found in an earlier image, the present one was not searched.
+  int windows = 0;            ///< there were to compare (positions times sizes).
+  int examined = 0;           ///< of those had their histogram counted: the measure of work.
 };
 
 /// Why an image was not searched.

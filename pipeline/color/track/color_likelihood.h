@@ -17,6 +17,14 @@ struct ColorPatch {
   std::vector<std::uint8_t> y, u, v;
 
   explicit ColorPatch(imaging::PatchSize s) : size(s), y(s.area()), u(s.area()), v(s.area()) {}
+
+  /// Allocates only where it was never as large.
+  void resize(imaging::PatchSize s) {
+    size = s;
+    y.resize(s.area());
+    u.resize(s.area());
+    v.resize(s.area());
+  }
 };
 
 /// relight() of all its pixels.

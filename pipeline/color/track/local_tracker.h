@@ -72,6 +72,9 @@ class LocalTracker {
   /// \param light  gain of the image's light from begin()'s. \return the best place for the object near `box`.
   LocalAnswer look(const imaging::Pyramid& image, const Box& box, const Light& light, Colors colors = Colors::kRecent);
 
+  /// \return how likely a colour is the object's, by the last images, under the light of begin()'s.
+  [[nodiscard]] const ColorLikelihood& colors() const { return colors_; }
+
   /// \return the factor by which `box` must grow about its centre.
   double growth(const imaging::Pyramid& image, const Box& box) { return scale_.estimate(image, box); }
 

@@ -14,9 +14,9 @@ double Presence::log_odds(const PresenceMeasures& measures) const {
          parameters_.divergence_weight * measures.divergence_rise + parameters_.separation_weight * measures.separation;
 }
 
-void Presence::add(const PresenceMeasures& measures) {
-  log_odds_ = std::clamp(parameters_.memory * log_odds_ + log_odds(measures), -parameters_.max_log_odds,
-                         parameters_.max_log_odds);
+void Presence::add(double log_odds) {
+  log_odds_ =
+      std::clamp(parameters_.memory * log_odds_ + log_odds, -parameters_.max_log_odds, parameters_.max_log_odds);
 }
 
 }  // namespace cgsr::color

@@ -52,8 +52,8 @@ class Presence {
   /// \return what one image says alone, as log-odds.
   [[nodiscard]] double log_odds(const PresenceMeasures& measures) const;
 
-  /// Counts an image.
-  void add(const PresenceMeasures& measures);
+  /// Counts an image. \param log_odds  of the object's presence by this image alone.
+  void add(double log_odds);
 
   /// The object is surely here.
   void confirm() { log_odds_ = parameters_.max_log_odds; }

@@ -41,6 +41,8 @@ void Tracker::place(const ImageView& image, const imaging::ReducedImage& reduced
   s.images_since_sight = 0;
   s.lost = false;
   s.presence.confirm();
+  s.clutter.reset();
+  s.images_since_beside = 0;
   s.foreign_images = 0;
   s.images_lost = 0;
 }

@@ -7,6 +7,7 @@
 
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
+#include "pipeline/color/track/clutter.h"
 #include "pipeline/color/track/confidence.h"
 #include "pipeline/color/track/illuminant_filter.h"
 #include "pipeline/color/track/light_follower.h"
@@ -46,6 +47,7 @@ struct DoubtParameters {
   int places_while_lost = 4;
   double min_reacquire_log_odds = 2.0;
   double min_reacquire_agreement = 0.7;
+  double agreement_weight = 3.5;
   double min_found_sharpness = 14.0;
   double min_found_score = 0.45;
   double min_found_agreement = 0.86;
@@ -68,15 +70,18 @@ struct DoubtParameters {
         "min_tentative_log_odds", self.min_tentative_log_odds, {-100.0, 100.0}, "",
         "The log-odds of presence from which what may be the lost object is followed, without being reported.");
     visit.number("places_while_lost", self.places_while_lost, {0, 40}, "",
-                 "The number of places that are examined in each image while the object is lost: those that the search "
-                 "found, then the place of the loss and those around it, in turn.");
+                 "The number of places that are examined in each image while the object is lost: up to two of those "
+                 "that the search found, in every second image one around the place of the loss, up to two whose "
+                 "colours stand out, then more around the place of the loss.");
     visit.number("min_reacquire_log_odds", self.min_reacquire_log_odds, {-100.0, 100.0}, "",
-                 "The log-odds of presence (color.track.presence) with which the object is found again elsewhere with "
-                 "its last appearance.");
+                 "The least log-odds of presence (color.track.presence) with which the object is found again elsewhere "
+                 "with its last appearance; where other things showed more, color.track.clutter asks for more.");
     visit.number(
         "min_reacquire_agreement", self.min_reacquire_agreement, {0.0, 1.0}, "",
-        "The agreement with the learned or the recent colour amounts, corrected for the light, that finding it "
-        "again elsewhere requires.");
+        "The agreement with the learned or the recent colour amounts, corrected for the light, below which finding "
+        "it again takes more log-odds.");
+    visit.number("agreement_weight", self.agreement_weight, {0.0, 100.0}, "",
+                 "The log-odds that each unit of agreement below min_reacquire_agreement takes.");
     visit.number("min_found_sharpness", self.min_found_sharpness, {0.0, 50.0}, "",
                  "The peak sharpness that a first detection requires.");
     visit.number("min_found_score", self.min_found_score, {0.0, 2.0}, "",
@@ -99,6 +104,7 @@ struct TrackParameters {
   LightFollowerParameters light;
   IlluminantParameters illuminant;
   PresenceParameters presence;
+  ClutterParameters clutter;
   DoubtParameters doubt;
   ConfidenceParameters confidence;
 
@@ -121,6 +127,7 @@ struct TrackParameters {
     visit.section("light", self.light, "How the object's colours change with light, side and shading");
     visit.section("illuminant", self.illuminant, "The light that falls on the object");
     visit.section("presence", self.presence, "The evidence for the object being where it is followed");
+    visit.section("clutter", self.clutter, "The evidence that other things in the scene show");
     visit.section("doubt", self.doubt,
                   "The criteria by which the object is found again, and another one is told from it");
     visit.section("confidence", self.confidence, "The probability that the box covers the object");
@@ -158,7 +165,7 @@ class Tracker {
 
   /// Which of the windows that a search found it is, or what became of the object since the last image, and the box that fits.
   /// \param image  as the camera sent it. \param reduced  the same, reduced with ObjectSearch's labels. \param matches  of the search of this
-  ///        image, with search_size(). \param budget  asked once per closer look.
+  ///        image, with search_size(). \param budget  asked once per closer look, learning or scan.
   TrackedObject track(const ImageView& image, const imaging::ReducedImage& reduced, const SearchResult& matches,
                       WorkBudget& budget);
 

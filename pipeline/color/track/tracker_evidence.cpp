@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "pipeline/color/track/relight.h"
 #include "pipeline/color/track/tracker_boxes.h"
@@ -14,6 +15,13 @@ constexpr int kRefinements = 3;
 // Of a window that may be the object as it looked last: one that fits badly gains a few in log-odds.
 constexpr int kRecognitionRounds = 2;
 constexpr double kMinGlanceLogOdds = -1.0;
+constexpr int kWindowsWhileLost = 2;  // of the search, in an image
+// What may be the object, somewhere else than what is followed tentatively, is followed instead from this on.
+constexpr double kMinInsteadLogOdds = 0.0;
+constexpr double kMinInsteadLead = 0.5;
+// Without this share of the object's colours nothing is the object, however alike its shape.
+constexpr double kMinAgreement = 0.4;
+constexpr int kImagesToBeside = 3;  // from one look at something beside the followed object to the next
 // What a window of the search, which fits the object only roughly, must have of what is asked after refinement: most windows without the
 // object end here, at a third of the cost.
 constexpr double kGlanceScore = 0.75;
@@ -51,6 +59,17 @@ double Tracker::State::recent_agreement(const Tint& seen) const {
   return recent_amounts.agreement(ColorAmounts(relit(seen.view, inverse(light.gain()))));
 }
 
+/// \return the log-odds that a place loses by colours of the object that it lacks.
+double Tracker::State::missing_color_penalty(const Place& place) const {
+  const DoubtParameters& doubt = parameters.doubt;
+  const Tint seen = tint(place.local.box);
+  const double agreement = std::max(seen.agreement, recent_agreement(seen));
+  // What is where it was seen last stood in its way, or beside it, more often than elsewhere.
+  const bool in_its_place = !intersection(place.local.box, lost ? lost_at : box).empty();
+  if (agreement < (in_its_place ? doubt.min_agreement : kMinAgreement)) return std::numeric_limits<double>::infinity();
+  return doubt.agreement_weight * std::max(0.0, doubt.min_reacquire_agreement - agreement);
+}
+
 PresenceMeasures Tracker::State::measures_of(const Place& place) const {
   const double score_ratio = mean_score > 0.0 ? place.local.score / mean_score : 0.0;  // a plain region has no score
   return {score_ratio, place.local.sharpness, place.divergence - mean_divergence, place.local.separation()};
@@ -69,51 +88,128 @@ void Tracker::State::follow_tentatively(const imaging::ReducedImage& reduced, Wo
 }
 
 /// Where it may be while what is followed tentatively is something else: where it was lost, and up to two sides away, one place after the other.
-/// \return none if the place's centre is outside the image.
-std::optional<Box> Tracker::State::place_around(int turn) const {
-  const auto [columns, rows] = kAround[static_cast<std::size_t>(turn) % kAround.size()];
-  Box place = centred_on(lost_at, box.width, box.height);
-  place.x += columns * box.width;
-  place.y += rows * box.height;
-  const double x = place.x + 0.5 * place.width;
-  const double y = place.y + 0.5 * place.height;
-  if (x < 0.0 || y < 0.0 || x > pyramid.width_px() || y > pyramid.height_px()) return std::nullopt;
-  return place;
+/// \return none if the centres of all are outside the image.
+std::optional<Box> Tracker::State::place_around() {
+  for (std::size_t i = 0; i < kAround.size(); ++i, next_around()) {
+    const auto [columns, rows] = kAround[around];
+    Box place = centred_on(lost_at, box.width, box.height);
+    place.x += columns * box.width;
+    place.y += rows * box.height;
+    if (in_image(place.x + 0.5 * place.width, place.y + 0.5 * place.height)) return place;
+  }
+  return std::nullopt;
 }
 
-/// Elsewhere, or where it was lost but in another size, as it looked last. The window that fits best is fitted before it is judged, for the
-/// search knows a few sizes only.
-/// \return whether one of the search's windows is surely the object; else `place` stays as it is.
-bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
-                               Place& place) {
-  Place best;
-  double most = kMinGlanceLogOdds;
-  const auto consider = [&](const Place& other) {
-    const double log_odds = presence.log_odds(measures_of(other));
-    if (log_odds <= most) return false;
-    best = other;
-    most = log_odds;
+void Tracker::State::next_around() {
+  around = (around + 1) % kAround.size();
+}
+
+/// While the object is surely followed, every third image, or the next one where that is searched and has less time: how much evidence the
+/// search's best window beside it shows.
+void Tracker::State::look_beside(const imaging::ReducedImage& reduced, const SearchResult& matches,
+                                 WorkBudget& budget) {
+  if (++images_since_beside < kImagesToBeside + (matches.of_this_image ? 1 : 0)) return;
+  images_since_beside = 0;
+  double log_odds = kMinGlanceLogOdds;
+  for (int i = 0; i < matches.count; ++i) {
+    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
+    if (!intersection(window, box).empty()) continue;
+    if (!budget.grant()) return;
+    const Place beside = look(reduced, centred_on(window, box.width, box.height));
+    if (intersection(beside.local.box, box).empty()) log_odds = presence.log_odds(measures_of(beside));
+    break;
+  }
+  clutter.add(log_odds);
+}
+
+/// What speaks for it is not enough to say that it is the object; following it will tell.
+void Tracker::State::follow_instead(const Place& other) {
+  const Box there = centred_on(other.local.box, box.width, box.height);
+  box = with_centre_inside(there, pyramid.width_px(), pyramid.height_px());
+  tentative = local;
+  presence.deny();
+}
+
+/// \return whether `other` is likelier than the likeliest so far.
+bool Tracker::State::consider(const Place& other, Candidate& likeliest) const {
+  const double log_odds = presence.log_odds(measures_of(other));
+  if (log_odds <= likeliest.log_odds) return false;
+  likeliest = {other, log_odds};
+  return true;
+}
+
+/// \return false: there is no work left for it.
+bool Tracker::State::consider_at(const imaging::ReducedImage& reduced, const Box& at, WorkBudget& budget,
+                                 Candidate& likeliest) {
+  if (!budget.grant()) return false;
+  consider(look(reduced, centred_on(at, box.width, box.height)), likeliest);
+  return true;
+}
+
+/// The search's windows look like the learned image; what has changed since is found near the place of the loss, or by its recent colours. That
+/// the windows come first also keeps `clutter` informed: without them more is taken for the object.
+void Tracker::State::consider_while_lost(const imaging::ReducedImage& reduced, const SearchResult& matches,
+                                         WorkBudget& budget, Candidate& likeliest) {
+  int looks = parameters.doubt.places_while_lost;
+  const auto consider_next = [&](const Box& at) {
+    const bool looked = looks > 0 && consider_at(reduced, at, budget, likeliest);
+    looks = looked ? looks - 1 : 0;
+    return looked;
+  };
+  const auto consider_around = [&] {
+    const auto there = place_around();
+    if (!there || !consider_next(*there)) return false;
+    next_around();
     return true;
   };
-  bool any = lost && consider(place);
-  for (int i = 0; i < matches.count && budget.grant(); ++i) {
-    const Box& window = matches.matches[static_cast<std::size_t>(i)].box;
-    any |= consider(look(reduced, centred_on(window, box.width, box.height)));
+  const int windows = std::min(matches.count, kWindowsWhileLost);
+  for (int i = 0; i < windows; ++i) consider_next(matches.matches[static_cast<std::size_t>(i)].box);
+  if (images_lost % 2 == 1) consider_around();
+  if (looks > 0 && budget.grant()) {
+    // The scan and a look at its first place are one unit of work; the others take turns.
+    const auto standing_out = color_scan.places(pyramid, local.colors(), light.gain(), box);
+    if (!standing_out.empty()) {
+      --looks;
+      consider(look(reduced, centred_on(standing_out.front(), box.width, box.height)), likeliest);
+    }
+    const std::size_t turn = 1 + static_cast<std::size_t>(images_lost) % (ColorScan::kMaxPlaces - 1);
+    if (turn < standing_out.size()) consider_next(standing_out[turn]);
   }
-  const int around = lost ? parameters.doubt.places_while_lost - matches.count : 0;
-  for (int i = 0; i < around && budget.grant(); ++i) {
-    if (const auto near = place_around(places_looked_at++)) any |= consider(look(reduced, *near));
+  while (consider_around()) {
   }
-  if (!any) return false;
+}
+
+/// Elsewhere, or where it was lost but in another size, as it looked last. What fits best is fitted before it is judged, for the places
+/// have a few sizes only.
+/// \return whether one of the places is surely the object; else `place` stays as it is.
+bool Tracker::State::recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                               Place& place) {
+  Candidate best{{}, kMinGlanceLogOdds};
+  if (lost) {
+    consider(place, best);
+    consider_while_lost(reduced, matches, budget, best);
+    clutter.add_pending(best.log_odds);
+  } else {
+    for (int i = 0; i < matches.count; ++i)
+      consider_at(reduced, matches.matches[static_cast<std::size_t>(i)].box, budget, best);
+  }
+  if (best.log_odds <= kMinGlanceLogOdds) return false;
   for (int round = 0; round < kRecognitionRounds && budget.grant(); ++round) {
-    const Box fitted = grown(best.local.box, local.growth(pyramid, best.local.box), model, parameters.max_size_ratio);
-    if (!consider(look(reduced, fitted))) break;
+    const Box& near = best.place.local.box;
+    const Box fitted = grown(near, local.growth(pyramid, near), model, parameters.max_size_ratio);
+    if (!consider(look(reduced, fitted), best)) break;
   }
-  if (most < parameters.doubt.min_reacquire_log_odds) return false;
-  const Tint seen = tint(best.local.box);
-  if (std::max(seen.agreement, recent_agreement(seen)) < parameters.doubt.min_reacquire_agreement) return false;
-  place = best;
-  return true;
+  if (best.log_odds <= kMinInsteadLogOdds) return false;
+  const double log_odds = best.log_odds - missing_color_penalty(best.place);
+  if (log_odds >= std::max(parameters.doubt.min_reacquire_log_odds, clutter.min_log_odds())) {
+    place = best.place;
+    return true;
+  }
+  const bool elsewhere = intersection(best.place.local.box, place.local.box).empty();
+  if (lost && elsewhere &&
+      log_odds > std::max(kMinInsteadLogOdds, presence.log_odds(measures_of(place)) + kMinInsteadLead))
+    follow_instead(best.place);
+  return false;
 }
 
 /// First sight, sight again after a loss, or elsewhere: each window of the search is looked at under its own light.

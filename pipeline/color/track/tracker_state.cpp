@@ -55,8 +55,10 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
   if (located) {
     if (lost) follow_tentatively(reduced, budget);
     place = look(reduced, box);
-    presence.add(measures_of(place));
-    // What is seen again where it was lost may be something of the same shape: its colours have to be the object's.
+    const double log_odds = presence.log_odds(measures_of(place));
+    // What is seen again where it was lost may be something of the same shape: its colours have to be the object's, and it has to be more
+    // like it than other things are.
+    presence.add(lost ? log_odds - clutter.level() : log_odds);
     followed = presence.believed() && (!lost || tint(place.local.box).agreement >= parameters.doubt.min_agreement);
   }
   if (!followed) {
@@ -71,7 +73,10 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     presence.confirm();
   }
   const bool continued = followed && !lost;
-  if (!continued) foreign_images = 0;
+  if (!continued) {
+    foreign_images = 0;
+    clutter.discard_pending();
+  }
   located = true;
   lost = false;
   images_lost = 0;
@@ -88,6 +93,7 @@ TrackedObject Tracker::State::track_full(const imaging::ReducedImage& reduced, c
     return lose();
   }
   learn(place, amounts, continued);
+  if (continued && foreign_images == 0) look_beside(reduced, matches, budget);
   ++images_since_sight;
   return answer(place, amounts);
 }
@@ -117,7 +123,7 @@ TrackedObject Tracker::State::lose() {
   lost = true;
   foreign_images = 0;
   images_lost = 0;
-  places_looked_at = 0;
+  around = 0;
   light.lose();
   confidence.reset();
   return {};

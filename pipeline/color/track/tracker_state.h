@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "pipeline/color/search/box_divergence.h"
+#include "pipeline/color/track/clutter.h"
 #include "pipeline/color/track/color_agreement.h"
+#include "pipeline/color/track/color_scan.h"
 #include "pipeline/color/track/light_estimate.h"
 #include "pipeline/color/track/light_follower.h"
 #include "pipeline/color/track/presence.h"
@@ -17,6 +19,12 @@ namespace cgsr::color {
 struct Place {
   LocalAnswer local;
   double divergence = 0.0;
+};
+
+/// The likeliest of several places.
+struct Candidate {
+  Place place;
+  double log_odds = 0.0;  ///< of presence there.
 };
 
 /// The colours of a place, against the learned ones.
@@ -39,7 +47,8 @@ struct Tracker::State {
         light(p.light),
         illuminant(p.illuminant),
         confidence(p.confidence),
-        presence(p.presence) {
+        presence(p.presence),
+        clutter(p.clutter) {
     learn_from_model();
   }
 
@@ -51,6 +60,7 @@ struct Tracker::State {
   Place look(const imaging::ReducedImage& reduced, const Box& box);
   [[nodiscard]] Tint tint(const Box& at) const;
   [[nodiscard]] double recent_agreement(const Tint& seen) const;
+  [[nodiscard]] double missing_color_penalty(const Place& place) const;
   /// Where it will come back, it may be nearer or farther: one size after the other, in different images.
   [[nodiscard]] double lost_scale() const {
     constexpr std::array kScales{1.0, 0.7, 1.4};
@@ -61,7 +71,17 @@ struct Tracker::State {
   TrackedObject lose();
   [[nodiscard]] PresenceMeasures measures_of(const Place& place) const;
   void follow_tentatively(const imaging::ReducedImage& reduced, WorkBudget& budget);
-  [[nodiscard]] std::optional<Box> place_around(int turn) const;
+  [[nodiscard]] bool in_image(double x_px, double y_px) const {
+    return x_px >= 0.0 && y_px >= 0.0 && x_px <= pyramid.width_px() && y_px <= pyramid.height_px();
+  }
+  [[nodiscard]] std::optional<Box> place_around();
+  void next_around();
+  void look_beside(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget);
+  void follow_instead(const Place& other);
+  bool consider(const Place& other, Candidate& likeliest) const;
+  bool consider_at(const imaging::ReducedImage& reduced, const Box& at, WorkBudget& budget, Candidate& likeliest);
+  void consider_while_lost(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget,
+                           Candidate& likeliest);
   bool recognise(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   bool find(const imaging::ReducedImage& reduced, const SearchResult& matches, WorkBudget& budget, Place& place);
   TrackedObject answer(const Place& place, const ColorAmounts& amounts);
@@ -77,6 +97,8 @@ struct Tracker::State {
   ChannelQuantiles image_quantiles;  ///< of the whole image.
   Confidence confidence;
   Presence presence;
+  Clutter clutter;
+  ColorScan color_scan;
   ChannelQuantiles learned_quantiles;
   ColorAmounts learned_amounts;
   ColorAmounts recent_amounts;  ///< of the last images, with their light taken out.
@@ -88,10 +110,11 @@ struct Tracker::State {
   double mean_score = 0.0;
   double mean_divergence = 0.0;
   int images_since_sight = 0;
-  bool lost = false;         ///< it was here, and is not seen.
-  int images_lost = 0;       ///< in a row.
-  int places_looked_at = 0;  ///< around it, since the loss.
-  int foreign_images = 0;    ///< in a row; whose colours are not the learned ones.
+  int images_since_beside = 0;
+  bool lost = false;       ///< it was here, and is not seen.
+  int images_lost = 0;     ///< in a row.
+  std::size_t around = 0;  ///< which of the places around it is looked at next.
+  int foreign_images = 0;  ///< in a row; whose colours are not the learned ones.
   double first_score = 0.0;
 };
 
