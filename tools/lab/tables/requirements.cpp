@@ -25,7 +25,7 @@ constexpr std::string_view kHalfPixel = "eleven of 28 sequences exceed it, human
 constexpr std::string_view kSpot =
     "skiing, skating2 and human3 lose a third of the IoU each under it, no other more than .08";
 constexpr std::string_view kLookAlikes =
-    "nearly all of them in three of 28 sequences where another that looks alike is in view: deer, human3 and "
+    "most of them in three of 28 sequences where another that looks alike is in view: deer, human3 and "
     "skating2";
 constexpr std::string_view kNotSeparated =
     "what comes back half as large, or from another side, is not recognised; of the rest some is not looked at, and "
