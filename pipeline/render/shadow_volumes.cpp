@@ -7,6 +7,10 @@
 namespace cgsr::render {
 namespace {
 
+constexpr float kLikeCells = 0.6F;     // parts of a side whose uncertainty differs by less are widened alike
+constexpr double kWithinACell = 0.4;   // added to what a border may be off by: a cell is marked by its middle alone
+constexpr float kLeastDepth_m = 0.2F;  // what is nearer is widened as what stands here
+
 RasterParameters raster_of(const ShadeParameters& parameters) {
   RasterParameters raster;
   raster.width = parameters.width * parameters.finer;
@@ -17,6 +21,11 @@ RasterParameters raster_of(const ShadeParameters& parameters) {
   raster.max_triangles = 8 * parameters.max_surfaces;
   raster.min_surface_cells = 0.5;
   return raster;
+}
+
+/// The bit of a cell that is to grow by so many cells (MaskGrowth::grow).
+std::uint8_t growth_bit(float cells) {
+  return static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(cells)));
 }
 
 bool same(const geometry::Camera& a, const geometry::Camera& b) {
@@ -167,23 +176,23 @@ void ShadowVolumes::draw_part(const Strip& strip, const DepthPlane& plane, const
   if (uncertain_) {
     const float least = std::min(from.least, to.least);
     const float most = std::max(from.most, to.most);
-    if (most > least + 1.5F && to.times > 1.15F * from.times) {
+    if (most > least + kLikeCells && to.times > 1.15F * from.times) {
       const PartEnd middle = end_of(strip, std::sqrt(from.times * to.times));
       draw_part(strip, plane, from, middle);
       draw_part(strip, plane, middle, to);
       return;
     }
-    bits = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(most)));
+    bits = growth_bit(most);
   }
   surfaces_.mark(strip.between(from.times, to.times), plane, 1.0F + static_cast<float>(parameters_.lift), buffer_, bits,
                  sides_);
 }
 
-/// How far the border of a volume may be off in the image at a point that lies so many times as far from the lamp as what throws the shade: the
-/// larger of both directions of the image, in cells of the masks, at the widest what a mask may grow by.
+/// By how much the border of a volume has to be widened in the image at a point that lies so many times as far from the lamp as what throws the
+/// shade: for the larger of both directions of the image, in cells of the masks, at the widest what a mask may grow by.
 float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const {
   const Eigen::Vector3f arm = p_W - axes_.p_WC;
-  const float depth = std::max(arm.dot(axes_.ahead), 0.2F);
+  const float depth = std::max(arm.dot(axes_.ahead), kLeastDepth_m);
   const auto variance = [&](const Eigen::Vector3f& way) {
     geometry::Vector6d J_pose;
     J_pose << way.cast<double>(), arm.cross(way).cast<double>();
@@ -192,7 +201,7 @@ float ShadowVolumes::moved_cells(const Eigen::Vector3f& p_W, float times) const 
   };
   const double by_map = static_cast<double>(times) * parameters_.map_sigma_m;
   const double sigma_m = std::sqrt(std::max(variance(axes_.right), variance(axes_.down)) + by_map * by_map);
-  const double cells = parameters_.sigmas * sigma_m * static_cast<double>(axes_.cells / depth);
+  const double cells = parameters_.sigmas * sigma_m * static_cast<double>(axes_.cells / depth) + kWithinACell;
   return static_cast<float>(std::clamp(cells, 0.0, static_cast<double>(parameters_.max_widening_cells)));
 }
 
@@ -251,21 +260,53 @@ void ShadowVolumes::write_masks() {
   const std::uint8_t* const sides = sides_.data();
   const End* const ends = ends_.data();
   const Ray* const rays = rays_.data();
-  // Where a side meets a surface its own uncertainty counts; where an outline ends the shade, the pose's.
-  std::uint8_t by_surface = 1;
-  if (uncertain_) {
-    const Eigen::Vector3f ahead = axes_.p_WC + 3.0F * axes_.ahead;
-    by_surface = static_cast<std::uint8_t>(1U << static_cast<unsigned>(std::lround(moved_cells(ahead, 1.0F))));
-  }
   const std::size_t count = rays_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t some = ends[i].triangle == DepthBuffer::kNothing ? 0 : 255;
     surface[i] = ends[i].shaded;
-    const auto marks =
-        static_cast<std::uint8_t>(((ends[i].shaded & by_surface) | in_shade | sides[rays[i].nearest]) & some);
+    const auto marks = static_cast<std::uint8_t>(((ends[i].shaded & 1U) | in_shade | sides[rays[i].nearest]) & some);
     possibly[i] = uncertain_ ? marks : static_cast<std::uint8_t>(marks != 0 ? 255 : 0);
   }
-  if (uncertain_) growth_.grow(possibly);
+  if (!uncertain_) return;
+  mark_outlines();
+  growth_.grow(possibly);
+}
+
+/// What a shaded surface grows by where an outline ends its shade: only the pose and the outline's own corners are uncertain there, so it depends
+/// on depth alone, and one bit for every step of 1/Z serves all cells. Where a side ends the shade its own uncertainty is marked already.
+void ShadowVolumes::mark_outlines() {
+  constexpr float kStepsPerInverseMetre = 32.0F;
+  std::array<std::uint8_t, 160> growth{};
+  for (std::size_t i = 0; i < growth.size(); ++i) {
+    const float w = (static_cast<float>(i) + 0.5F) / kStepsPerInverseMetre;
+    growth[i] = growth_bit(moved_cells(axes_.p_WC + axes_.ahead / w, 1.0F));
+  }
+  const auto width = static_cast<std::size_t>(masks_.width);
+  const std::uint8_t* const surface = masks_.surface_shaded.data();
+  const std::size_t count = masks_.surface_shaded.size();
+  const auto mark = [&](std::size_t i) {
+    const bool inside = i >= width && i + width < count &&
+                        (surface[i - 1] & surface[i + 1] & surface[i - width] & surface[i + width]) != 0;
+    if (surface[i] == 0 || inside) return;
+    const float w = surfaces_.plane_of(surfaces_.surface_of(ends_[i].triangle)).at(rays_[i].u, rays_[i].v);
+    const auto step = std::clamp(static_cast<int>(w * kStepsPerInverseMetre), 0, static_cast<int>(growth.size()) - 1);
+    masks_.possibly_shaded[i] |= growth[static_cast<std::size_t>(step)];
+  };
+  constexpr std::uint64_t kAll = ~std::uint64_t{0};
+  const auto eight_at = [surface](std::size_t i) {
+    std::uint64_t eight = 0;
+    std::memcpy(&eight, surface + i, sizeof eight);
+    return eight;
+  };
+  std::size_t i = 0;
+  for (; i + 8 <= count; i += 8) {
+    const std::uint64_t eight = eight_at(i);
+    if (eight == 0) continue;
+    const bool inside = eight == kAll && i >= width && i + 8 + width <= count &&
+                        (eight_at(i - width) & eight_at(i + width)) == kAll && (surface[i - 1] & surface[i + 8]) != 0;
+    for (std::size_t k = i; k < i + 8 && !inside; ++k) mark(k);
+  }
+  for (; i < count; ++i) mark(i);
 }
 
 /// The triangle in all four cells around a ray; kSeveral: there is not one.

@@ -118,6 +118,7 @@ class ShadowVolumes {
   void draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to);
   [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
   void write_masks();
+  void mark_outlines();
   void shade_surfaces();
   void follow(const Ray& ray, std::uint32_t triangle, End& end) const;
   [[nodiscard]] std::uint32_t seen_around(const Ray& ray) const;

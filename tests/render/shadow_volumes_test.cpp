@@ -222,6 +222,27 @@ TEST(ShadowVolumesProperty, TheWidenedMaskHoldsWhatLampAndPoseDoNotKnow) {
   EXPECT_LT(area, 1.6);
 }
 
+// The lamp stands behind a panel: all of its face is shaded, and what it grows by is the camera's error at the panel's own depth.
+TEST(ShadowVolumes, AShadedFaceGrowsByWhatItsDepthSays) {
+  const ShadeErrors errors = errors_of(0.0, 0.012, 0.0);
+  ShadeParameters parameters;
+  parameters.map_sigma_m = 0.0;
+  const auto width_cells = [&](float away_m, bool widened) {
+    Map map;
+    add_rectangle(map, {away_m, -0.25F * away_m, 1.0F - 0.15F * away_m}, {0.0F, 0.5F * away_m, 0.0F},
+                  {0.0F, 0.0F, 0.3F * away_m});
+    ShadowVolumes volumes(map, parameters);
+    const Pose X_WC = looking_from({0.0, 0.0, 1.0}, {1.0, 0.0, 1.0});
+    const Vector3d p_WL(away_m + 1.0, 0.0, 1.0);
+    const auto& masks = widened ? volumes.look(X_WC, Camera(), p_WL, errors) : volumes.look(X_WC, Camera(), p_WL);
+    const auto row = masks.possibly_shaded.begin() + 60 * masks.width;
+    return static_cast<int>(masks.width - std::count(row, row + masks.width, 0));
+  };
+  EXPECT_EQ(width_cells(1.0F, false), width_cells(4.0F, false)) << "the same angle";
+  EXPECT_GE(width_cells(1.0F, true) - width_cells(1.0F, false), 2 * 4) << "2 sigmas at 1 m: 4 cells a side";
+  EXPECT_EQ(width_cells(4.0F, true) - width_cells(4.0F, false), 2 * 1);
+}
+
 // By the definition, at random: a ray from where each cell looks to the lamp, past every triangle.
 TEST(ShadowVolumesProperty, SurfacesAreShadedWhereARayToTheLampIsStopped) {
   std::mt19937 random(5);
