@@ -48,7 +48,8 @@ class ShadowVolumes {
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          int widen_cells = 0);
 
-  /// The same, with the second mask widened by what the errors of lamp, pose and map may move its borders by; the first stays as it is.
+  /// The same, with the second mask widened by what the errors of lamp, pose and map may move its borders by, and by some of a cell, for a cell is
+  /// marked by its middle alone; the first stays as it is.
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          const ShadeErrors& errors);
 
