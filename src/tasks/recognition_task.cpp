@@ -7,7 +7,7 @@ namespace cgsr::tasks {
 // An answer that finds no room is lost: the ring holds as many as can be asked for at once.
 void RecognitionTask::step() {
   while (const auto question = links_.face_questions.pop()) {
-    static_cast<void>(links_.face_answers.push(person::recognize(*question, gallery_)));
+    static_cast<void>(links_.face_answers.push(trainer_.answer(*question)));
   }
 }
 

@@ -5,16 +5,16 @@
 
 namespace cgsr::tasks {
 
-/// Names faces on a thread of its own, below everything that has a deadline.
+/// Names faces, and learns new views of them, on a thread of its own, below everything that has a deadline.
 class RecognitionTask {
  public:
-  RecognitionTask(person::FaceGallery gallery, Links& links) : gallery_(std::move(gallery)), links_(links) {}
+  RecognitionTask(person::FaceGallery gallery, Links& links) : trainer_(std::move(gallery)), links_(links) {}
 
   /// Answers every question that is there.
   void step();
 
  private:
-  person::FaceGallery gallery_;
+  person::FaceTrainer trainer_;
   Links& links_;
 };
 

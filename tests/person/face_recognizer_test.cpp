@@ -101,6 +101,78 @@ TEST(IdentifyCrop, IsTheGallerysAnswerWhereTheFaceLiesAsTheEnrolledOnes) {
   EXPECT_FALSE(identify_crop(crop, gallery_of_one(), 2).label) << "left out";
 }
 
+/// The face of person 2, changed so far into another one's: as by a beard that grows.
+FaceQuestion changed(std::uint32_t face, double share) {
+  cv::Mat mixed;
+  cv::addWeighted(portrait(2), 1.0 - share, portrait(50), share, 0.0, mixed);
+  return {face, face_crop(view_of_grey(mixed), kFace)};
+}
+
+constexpr double kStep = 0.05, kFar = 0.4;
+
+struct Followed {
+  int learned = 0;
+  std::optional<Label> last;
+};
+
+/// Follows that face from how it was enrolled to what nobody was enrolled as.
+Followed follow_change(FaceTrainer& trainer, std::uint32_t face) {
+  Followed followed;
+  for (int i = 0; i < 3; ++i) trainer.answer(changed(face, 0.0));
+  for (double share = kStep; share < kFar + kStep / 2; share += kStep) {
+    const FaceAnswer answer = trainer.answer(changed(face, share));
+    followed.learned += answer.learned ? 1 : 0;
+    followed.last = answer.match.label;
+  }
+  return followed;
+}
+
+FaceGallery gallery_with(const FaceMatchParameters& parameters) {
+  FaceGallery gallery(parameters);
+  const FaceGallery two = gallery_of_two();
+  for (const Label person : {1, 2}) {
+    for (const FaceView& view : *two.views_of(person)) gallery.enroll(person, view);
+  }
+  return gallery;
+}
+
+TEST(FaceTrainer, LearnsAFaceThatChangesWhileItIsFollowed) {
+  FaceTrainer fixed(gallery_with({.max_learned_views = 0}));
+  const Followed lost = follow_change(fixed, 1);
+  EXPECT_EQ(lost.learned, 0);
+  EXPECT_FALSE(lost.last) << "changed so far that it is a stranger's";
+
+  FaceTrainer trainer(gallery_of_two());
+  const Followed followed = follow_change(trainer, 1);
+  EXPECT_GT(followed.learned, 0);
+  EXPECT_EQ(followed.last, 2);
+  EXPECT_EQ(trainer.answer(changed(9, kFar)).match.label, 2) << "another track's face is named by what was learned";
+  EXPECT_EQ(trainer.gallery().views_of(2)->size(), 2U) << "what was enrolled stays";
+  EXPECT_LE(trainer.gallery().learned_views_of(2)->size(), 2U);
+  EXPECT_TRUE(trainer.gallery().learned_views_of(1)->empty());
+}
+
+// Whoever comes before the face of somebody who is followed is not learned as that person, though he be nearer to him than to everybody else.
+TEST(FaceTrainer, LearnsNobodyWhoTakesTheFacesPlace) {
+  FaceTrainer trainer(gallery_of_two());
+  for (int i = 0; i < 3; ++i) trainer.answer(changed(1, 0.0));
+  for (int i = 0; i < 10; ++i) {
+    const FaceAnswer answer = trainer.answer(changed(1, 0.3));
+    EXPECT_EQ(answer.match.nearest, 2);
+    EXPECT_GT(answer.match.margin, 0.0) << "or it would say nothing";
+    EXPECT_FALSE(answer.learned) << i;
+  }
+  for (unsigned stranger = 100; stranger < 110; ++stranger)
+    EXPECT_FALSE(trainer.answer(question(1, stranger)).learned) << stranger;
+}
+
+TEST(FaceTrainer, LearnsNoFaceThatWasNotSurelyNamedTwice) {
+  FaceTrainer trainer(gallery_of_two());
+  trainer.answer(changed(1, 0.0));
+  for (double share = kStep; share < kFar; share += kStep)
+    EXPECT_FALSE(trainer.answer(changed(2 + static_cast<std::uint32_t>(share / kStep), share)).learned) << share;
+}
+
 // What the fit says is what was done to the crop, and cutting it again undoes it.
 TEST(FaceAlignment, IsWhereTheFaceLiesInItsCrop) {
   const FaceView view = view_of(*describe_face(view_of_grey(portrait(2)), kFace));

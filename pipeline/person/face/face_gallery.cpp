@@ -12,12 +12,6 @@ constexpr std::size_t kEnoughOthers = 4;
 
 using PointDistances = std::array<double, kViewSide * kViewSide>;
 
-/// How far a face is from a person.
-struct Away {
-  double distance = 1.0;
-  FaceAlignment alignment;  // against the nearest view
-};
-
 // Hair, glasses and background, which match nobody, are left out.
 double mean_of_nearest(PointDistances points) {
   constexpr double kCounted = 0.8;
@@ -26,36 +20,64 @@ double mean_of_nearest(PointDistances points) {
   return std::accumulate(points.begin(), points.begin() + counted, 0.0) / static_cast<double>(counted);
 }
 
-Away from(const FaceDescriptor& face, const std::vector<FaceView>& views) {
+}  // namespace
+
+/// How far a face is from a person.
+struct FaceGallery::Away {
+  double distance = 1.0;
+  FaceAlignment alignment;  // against the nearest view
+};
+
+FaceGallery::Away FaceGallery::from(const FaceDescriptor& face, const Known& known) {
   Away away;
   PointDistances nearest{}, one{};
   nearest.fill(1.0);
   double nearest_view = std::numeric_limits<double>::infinity();
-  for (const FaceView& view : views) {
+  const auto compare = [&](const FaceView& view) {
     const FaceAlignment alignment = view_distances(face, view, one);
     if (const double distance = mean_of_nearest(one); distance < nearest_view) {
       nearest_view = distance;
       away.alignment = alignment;
     }
     for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = std::min(nearest[i], one[i]);
-  }
+  };
+  std::ranges::for_each(known.enrolled, compare);
+  std::ranges::for_each(known.learned, compare);
   away.distance = mean_of_nearest(nearest);
   return away;
 }
 
-}  // namespace
+double FaceGallery::distance(const FaceDescriptor& face, const FaceView& view) {
+  PointDistances points{};
+  view_distances(face, view, points);
+  return mean_of_nearest(points);
+}
 
 void FaceGallery::enroll(Label person, const FaceView& view) {
-  auto& views = people_[person];
+  auto& views = people_[person].enrolled;
   if (views.size() >= static_cast<std::size_t>(parameters_.max_views)) {
     views.erase(views.begin() + (views.size() > 1 ? 1 : 0));
   }
   views.push_back(view);
 }
 
+bool FaceGallery::learn(Label person, const FaceView& view) {
+  const auto found = people_.find(person);
+  if (found == people_.end() || parameters_.max_learned_views == 0) return false;
+  auto& views = found->second.learned;
+  if (views.size() >= static_cast<std::size_t>(parameters_.max_learned_views)) views.erase(views.begin());
+  views.push_back(view);
+  return true;
+}
+
 const std::vector<FaceView>* FaceGallery::views_of(Label person) const {
   const auto found = people_.find(person);
-  return found == people_.end() ? nullptr : &found->second;
+  return found == people_.end() ? nullptr : &found->second.enrolled;
+}
+
+const std::vector<FaceView>* FaceGallery::learned_views_of(Label person) const {
+  const auto found = people_.find(person);
+  return found == people_.end() ? nullptr : &found->second.learned;
 }
 
 FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label> without) const {
@@ -63,10 +85,10 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
   if (face.dense.empty()) return match;
   double second = 1.0;
   std::size_t compared = 0;
-  for (const auto& [person, views] : people_) {
-    if (person == without || views.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
+  for (const auto& [person, known] : people_) {
+    if (person == without || known.enrolled.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
     ++compared;
-    const Away away = from(face, views);
+    const Away away = from(face, known);
     match.alignment.move_towards(away.alignment, 1.0 / static_cast<double>(compared));
     if (away.distance < match.distance) {
       second = match.distance;

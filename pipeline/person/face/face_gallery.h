@@ -15,6 +15,8 @@ struct FaceMatchParameters {
   double typical_stranger = 0.105;
   int min_views = 2;
   int max_views = 6;
+  int max_learned_views = 2;
+  double max_step = 0.05;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -27,6 +29,13 @@ struct FaceMatchParameters {
                  "The number of views from which on a person can be named.");
     visit.number("max_views", self.max_views, Range{1, 50}, "",
                  "The number of views kept of a person; more replace the oldest but the first.");
+    visit.number("max_learned_views", self.max_learned_views, Range{0, 20}, "",
+                 "The number of views kept besides, until the end of the run, that were learned while a person was "
+                 "followed; more replace the oldest. 0: none is learned.");
+    visit.number(
+        "max_step", self.max_step, Range{0.0, 0.5}, "",
+        "A face that is followed and no longer surely named is learned where it is no farther than this from "
+        "how it was when it was surely named: larger, and somebody else who comes before the face is learned.");
   }
 };
 
@@ -45,16 +54,25 @@ struct FaceMatch {
 /// SIFT matches and names the person with most; here descriptors are compared place by place, and a face must be nearer to one person than to all
 /// others by a margin: how far faces are from each other depends on the light, the difference of two such distances hardly.
 ///
-/// Bounded: max_views per person. Threads: one at a time; enrolled in the background, read when it is handed over.
+/// Bounded: max_views and max_learned_views per person. Threads: one at a time; enrolled in the background, read when it is handed over.
 class FaceGallery {
  public:
   explicit FaceGallery(const FaceMatchParameters& parameters = {}) : parameters_(parameters) {}
 
   void enroll(Label person, const FaceView& view);
+  /// Train of a primary characteristic (Alg. 6.1): a view of somebody who is enrolled, kept beside those and never in their place. Ours; 6.2.4 leaves the
+  /// training of faces out.
+  /// \return whether it was kept: there is such a person, and views may be learned.
+  bool learn(Label person, const FaceView& view);
   /// \return whether there was such a person.
   bool forget(Label person) { return people_.erase(person) > 0; }
   [[nodiscard]] std::size_t people() const { return people_.size(); }
+  /// \return those that were enrolled, and those that were learned; nothing: there is no such person.
   [[nodiscard]] const std::vector<FaceView>* views_of(Label person) const;
+  [[nodiscard]] const std::vector<FaceView>* learned_views_of(Label person) const;
+  /// \return how far a face is from one view, as from a person who has no other.
+  static double distance(const FaceDescriptor& face, const FaceView& view);
+  [[nodiscard]] const FaceMatchParameters& parameters() const { return parameters_; }
 
   /// \param without  this person is left out, as if he had not been enrolled.
   /// Cost: 0.5 million instructions per view.
@@ -62,7 +80,13 @@ class FaceGallery {
 
  private:
   FaceMatchParameters parameters_;
-  std::map<Label, std::vector<FaceView>> people_;
+  struct Known {
+    std::vector<FaceView> enrolled, learned;
+  };
+  struct Away;
+  static Away from(const FaceDescriptor& face, const Known& known);
+
+  std::map<Label, Known> people_;
 };
 
 }  // namespace cgsr::person

@@ -1,23 +1,66 @@
 #include "pipeline/person/face/face_recognizer.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
 #include "platform/count_apart.h"
 
 namespace cgsr::person {
+namespace {
 
-FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without) {
-  const auto face = describe_crop(crop);
-  if (!face) return {};
-  const FaceMatch match = gallery.identify(*face, without);
-  if (match.alignment.is_small()) return match;
-  const auto aligned = describe_crop(aligned_crop(crop, match.alignment));
-  return aligned ? gallery.identify(*aligned, without) : match;
+/// A face in a crop, cut as the enrolled ones lie, and whose it is.
+struct Compared {
+  FaceDescriptor face;
+  FaceMatch match;
+};
+
+std::optional<Compared> compare(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without) {
+  auto face = describe_crop(crop);
+  if (!face) return std::nullopt;
+  FaceMatch match = gallery.identify(*face, without);
+  if (match.alignment.is_small()) return Compared{std::move(*face), match};
+  auto aligned = describe_crop(aligned_crop(crop, match.alignment));
+  if (!aligned) return Compared{std::move(*face), match};
+  match = gallery.identify(*aligned, without);
+  return Compared{std::move(*aligned), match};
 }
 
-FaceAnswer recognize(const FaceQuestion& question, const FaceGallery& gallery) {
-  return {question.face, identify_crop(question.crop, gallery)};
+}  // namespace
+
+FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without) {
+  const auto compared = compare(crop, gallery, without);
+  return compared ? compared->match : FaceMatch{};
+}
+
+FaceTrainer::Followed& FaceTrainer::followed(std::uint32_t face) {
+  const auto known = std::ranges::find(followed_, face, &Followed::face);
+  if (known != followed_.end()) return *known;
+  Followed& replaced = followed_[oldest_];
+  oldest_ = (oldest_ + 1) % kFaces;
+  replaced = {.face = face};
+  return replaced;
+}
+
+FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
+  constexpr double kSure = 2.0;  // of the least margin that names a face
+  constexpr int kTwice = 2;
+  const auto compared = compare(question.crop, gallery_, std::nullopt);
+  if (!compared) return {question.face, {}};
+  const FaceMatch& match = compared->match;
+  FaceAnswer answer{question.face, match};
+  if (match.margin <= 0.0) return answer;
+  Followed& before = followed(question.face);
+  if (match.margin >= kSure * gallery_.parameters().min_margin) {
+    before.sure = match.nearest == before.person ? before.sure + 1 : 1;
+    before.person = *match.nearest;
+    before.view = view_of(compared->face);
+  } else if (match.nearest == before.person && before.sure >= kTwice &&
+             FaceGallery::distance(compared->face, before.view) <= gallery_.parameters().max_step) {
+    before.view = view_of(compared->face);
+    answer.learned = gallery_.learn(before.person, before.view);
+  }
+  return answer;
 }
 
 bool SteppedRecognizer::ask(FaceQuestion&& question) {
@@ -30,7 +73,7 @@ bool SteppedRecognizer::ask(FaceQuestion&& question) {
 std::optional<FaceAnswer> SteppedRecognizer::answer() {
   if (!question_ || --images_left_ > 0) return std::nullopt;
   const CountApart apart("identify", "recognition");  // on a robot the thread of that name does it
-  const FaceAnswer answer = recognize(*question_, gallery_);
+  const FaceAnswer answer = trainer_.answer(*question_);
   question_.reset();
   return answer;
 }

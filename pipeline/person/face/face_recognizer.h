@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/face/grey_region.h"
@@ -18,6 +21,7 @@ struct FaceQuestion {
 struct FaceAnswer {
   std::uint32_t face = 0;
   FaceMatch match;
+  bool learned = false;  ///< whether a view of it was learned.
 };
 
 /// Describes the face in a crop and compares it with everybody's (6.2.1). The detector's box is up to a third too small or too large, and a face that lies
@@ -28,8 +32,35 @@ struct FaceAnswer {
 /// Cost: 30 million instructions and half a million for each view in the gallery; twice that where it is cut once more.
 FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without = std::nullopt);
 
-/// Names the face of a question. Cost: as identify_crop().
-FaceAnswer recognize(const FaceQuestion& question, const FaceGallery& gallery);
+/// Names the faces of questions, and learns new views of who is followed: the training of a primary characteristic by one that is surer (Alg. 6.1). Here that
+/// is the face's own past: whose it surely was a moment ago it still is, in another light or turned away, as long as it changes in small steps. A face that was
+/// surely named twice in a row, is followed without a gap and is no longer surely named, but nearest to the same person still, is learned where it is near
+/// to how it was then: somebody else who comes before it is not. Ours; 6.2.4 leaves the training of faces out.
+///
+/// Bounded: kFaces faces are remembered, and views as the gallery bounds them. Threads: one, the recogniser's.
+class FaceTrainer {
+ public:
+  explicit FaceTrainer(FaceGallery gallery) : gallery_(std::move(gallery)) {}
+
+  /// Cost: as identify_crop(), and half a million instructions where the name is not sure.
+  FaceAnswer answer(const FaceQuestion& question);
+
+  [[nodiscard]] const FaceGallery& gallery() const { return gallery_; }
+
+ private:
+  static constexpr std::size_t kFaces = 4;
+  struct Followed {
+    std::uint32_t face = 0;  // number of its track; 0: none
+    Label person = 0;        // whose it was
+    int sure = 0;            // answers in a row
+    FaceView view{};         // how it was
+  };
+  Followed& followed(std::uint32_t face);
+
+  FaceGallery gallery_;
+  std::array<Followed, kFaces> followed_{};
+  std::size_t oldest_ = 0;
+};
 
 /// Where the frame path has faces named: beside it, because describing a face costs a third of an image's time. Whoever asks goes on and looks
 /// for the answer in a later image. Ours; the dissertation (6.2.3) recognises on the frame path, in every other image.
@@ -50,13 +81,13 @@ class FaceRecognizer {
 class SteppedRecognizer final : public FaceRecognizer {
  public:
   /// \param images  at least 1.
-  SteppedRecognizer(FaceGallery gallery, int images) : gallery_(std::move(gallery)), images_(images) {}
+  SteppedRecognizer(FaceGallery gallery, int images) : trainer_(std::move(gallery)), images_(images) {}
 
   bool ask(FaceQuestion&& question) override;
   std::optional<FaceAnswer> answer() override;
 
  private:
-  FaceGallery gallery_;
+  FaceTrainer trainer_;
   int images_;
   std::optional<FaceQuestion> question_;
   int images_left_ = 0;

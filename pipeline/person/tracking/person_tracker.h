@@ -19,7 +19,7 @@ inline constexpr Label kStranger = 0;
 class FaceClassifier final : public Classifier<PersonImage> {
  public:
   std::optional<Classification> classify(const PersonImage& input) override;
-  /// Not trained in the loop: describing a face is the trainer's work, and the dissertation left it out as well (6.2.4).
+  /// A shirt does not train a face, as in 6.2.4: who wears somebody else's would become that person. FaceTrainer does, by the face's own past.
   void train(Label, std::optional<Label>) override {}
 };
 
