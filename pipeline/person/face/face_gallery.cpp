@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <span>
 
 namespace cgsr::person {
 namespace {
@@ -20,15 +21,13 @@ double mean_of_nearest(PointDistances points) {
   return std::accumulate(points.begin(), points.begin() + counted, 0.0) / static_cast<double>(counted);
 }
 
-}  // namespace
-
 /// How far a face is from a person.
-struct FaceGallery::Away {
+struct Away {
   double distance = 1.0;
   FaceAlignment alignment;  // against the nearest view
 };
 
-FaceGallery::Away FaceGallery::from(const FaceDescriptor& face, const Known& known) {
+Away from(const FaceDescriptor& face, std::span<const FaceView> enrolled, std::span<const FaceView> learned) {
   Away away;
   PointDistances nearest{}, one{};
   nearest.fill(1.0);
@@ -41,11 +40,13 @@ FaceGallery::Away FaceGallery::from(const FaceDescriptor& face, const Known& kno
     }
     for (std::size_t i = 0; i < nearest.size(); ++i) nearest[i] = std::min(nearest[i], one[i]);
   };
-  std::ranges::for_each(known.enrolled, compare);
-  std::ranges::for_each(known.learned, compare);
+  std::ranges::for_each(enrolled, compare);
+  std::ranges::for_each(learned, compare);
   away.distance = mean_of_nearest(nearest);
   return away;
 }
+
+}  // namespace
 
 double FaceGallery::distance(const FaceDescriptor& face, const FaceView& view) {
   PointDistances points{};
@@ -61,13 +62,12 @@ void FaceGallery::enroll(Label person, const FaceView& view) {
   views.push_back(view);
 }
 
-bool FaceGallery::learn(Label person, const FaceView& view) {
+void FaceGallery::learn(Label person, const FaceView& view) {
   const auto found = people_.find(person);
-  if (found == people_.end() || parameters_.max_learned_views == 0) return false;
+  if (found == people_.end() || parameters_.max_learned_views == 0) return;
   auto& views = found->second.learned;
   if (views.size() >= static_cast<std::size_t>(parameters_.max_learned_views)) views.erase(views.begin());
   views.push_back(view);
-  return true;
 }
 
 const std::vector<FaceView>* FaceGallery::views_of(Label person) const {
@@ -88,7 +88,7 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
   for (const auto& [person, known] : people_) {
     if (person == without || known.enrolled.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
     ++compared;
-    const Away away = from(face, known);
+    const Away away = from(face, known.enrolled, known.learned);
     match.alignment.move_towards(away.alignment, 1.0 / static_cast<double>(compared));
     if (away.distance < match.distance) {
       second = match.distance;

@@ -62,8 +62,8 @@ class FaceGallery {
   void enroll(Label person, const FaceView& view);
   /// Train of a primary characteristic (Alg. 6.1): a view of somebody who is enrolled, kept beside those and never in their place. Ours; 6.2.4 leaves the
   /// training of faces out.
-  /// \return whether it was kept: there is such a person, and views may be learned.
-  bool learn(Label person, const FaceView& view);
+  /// Nothing happens where there is no such person.
+  void learn(Label person, const FaceView& view);
   /// \return whether there was such a person.
   bool forget(Label person) { return people_.erase(person) > 0; }
   [[nodiscard]] std::size_t people() const { return people_.size(); }
@@ -83,9 +83,6 @@ class FaceGallery {
   struct Known {
     std::vector<FaceView> enrolled, learned;
   };
-  struct Away;
-  static Away from(const FaceDescriptor& face, const Known& known);
-
   std::map<Label, Known> people_;
 };
 

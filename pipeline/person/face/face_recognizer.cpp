@@ -48,7 +48,7 @@ FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   const auto compared = compare(question.crop, gallery_, std::nullopt);
   if (!compared) return {question.face, {}};
   const FaceMatch& match = compared->match;
-  FaceAnswer answer{question.face, match};
+  const FaceAnswer answer{question.face, match};
   if (match.margin <= 0.0) return answer;
   Followed& before = followed(question.face);
   if (match.margin >= kSure * gallery_.parameters().min_margin) {
@@ -58,7 +58,7 @@ FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   } else if (match.nearest == before.person && before.sure >= kTwice &&
              FaceGallery::distance(compared->face, before.view) <= gallery_.parameters().max_step) {
     before.view = view_of(compared->face);
-    answer.learned = gallery_.learn(before.person, before.view);
+    gallery_.learn(before.person, before.view);
   }
   return answer;
 }

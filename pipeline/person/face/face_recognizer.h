@@ -21,7 +21,6 @@ struct FaceQuestion {
 struct FaceAnswer {
   std::uint32_t face = 0;
   FaceMatch match;
-  bool learned = false;  ///< whether a view of it was learned.
 };
 
 /// Describes the face in a crop and compares it with everybody's (6.2.1). The detector's box is up to a third too small or too large, and a face that lies
@@ -34,7 +33,7 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
 
 /// Names the faces of questions, and learns new views of who is followed: the training of a primary characteristic by one that is surer (Alg. 6.1). Here that
 /// is the face's own past: whose it surely was a moment ago it still is, in another light or turned away, as long as it changes in small steps. A face that was
-/// surely named twice in a row, is followed without a gap and is no longer surely named, but nearest to the same person still, is learned where it is near
+/// surely named twice in a row, is followed as one track and is no longer surely named, but nearest to the same person still, is learned where it is near
 /// to how it was then: somebody else who comes before it is not. Ours; 6.2.4 leaves the training of faces out.
 ///
 /// Bounded: kFaces faces are remembered, and views as the gallery bounds them. Threads: one, the recogniser's.
