@@ -80,6 +80,36 @@ TEST(ShirtPlace, LearnsWhatComesIntoViewThere) {
   EXPECT_EQ(tracker.update({picture.view()}).person, 1) << "in blue by now";
 }
 
+// Seen from the side a trunk is narrower: the wall beside it, which was another when the shirt was learned, is no shirt, and nobody is there without the shirt.
+TEST(ShirtPlace, DoesNotLearnTheWallBehindWhoeverTurnsSideways) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  show_face(tracker, standing(kRed));
+  const Picture wall{kBlue};
+  Picture picture = wall;
+  picture.fill({kShirtBox.x + 0.17 * kShirtBox.width, kShirtBox.y, 0.66 * kShirtBox.width, kShirtBox.height}, kRed);
+  for (int image = 0; image < 80; ++image) ASSERT_EQ(tracker.update({picture.view()}).person, 1) << image;
+  for (int image = 0; image < 80; ++image) EXPECT_EQ(tracker.update({wall.view()}).person, std::nullopt) << image;
+}
+
+// 6.3.1, size and motion: the shirt is gone, and the foot of a door has its colours. A shirt as large as it was may have gone anywhere.
+TEST(ShirtPlace, IsNotAScrapElsewhereAsSoonAsTheShirtIsGone) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  constexpr Box kScrap{20, 200, 40, 12}, kMoved{220, 80, 80, 100};
+  for (const Box& elsewhere : {kScrap, kMoved}) {
+    PersonTracker tracker(parameters);
+    learn(tracker, 1, kRed);
+    show_face(tracker, standing(kRed));
+    ASSERT_EQ(tracker.update({standing(kRed).view()}).person, 1);
+    Picture picture;
+    picture.fill(elsewhere, kRed);
+    const bool is_shirt = elsewhere.area() == kMoved.area();
+    for (int image = 0; image < 60; ++image)
+      EXPECT_EQ(tracker.update({picture.view()}).person == 1, is_shirt) << image << (is_shirt ? " moved" : " scrap");
+  }
+}
+
 // A jacket of the colour of the road behind it, and a red shirt below it.
 TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
   PersonTrackerParameters parameters;

@@ -1,9 +1,13 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 #include <vector>
+
+#include "pipeline/person/colors/color_histogram.h"
 
 namespace cgsr::person {
 namespace {
@@ -58,6 +62,22 @@ std::vector<imaging::Rgb> thinned(std::vector<imaging::Rgb> samples) {
   std::vector<imaging::Rgb> some;
   for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
   return some;
+}
+
+std::vector<imaging::Rgb> colors_of_both(const ImageView& image, const std::array<Box, 2>& regions) {
+  auto colors = region_colors(image, regions[0]);
+  const auto right = region_colors(image, regions[1]);
+  colors.insert(colors.end(), right.begin(), right.end());
+  return colors;
+}
+
+// A person who turns sideways leaves room at his place for the wall behind him: what is rarer in it than beside it is not learned. Another side of the shirt
+// that comes into view is in it alone.
+void leave_out_background(std::vector<imaging::Rgb>& samples, std::span<const imaging::Rgb> beside) {
+  ColorHistogram inside, outside;
+  inside.add(samples);
+  outside.add(beside);
+  std::erase_if(samples, [&](const imaging::Rgb& color) { return inside.share(color) < outside.share(color); });
 }
 
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
@@ -149,6 +169,16 @@ std::uint16_t ShirtClassifier::label_of(Label person) const {
   return static_cast<std::uint16_t>(std::ranges::find(order_, person) - order_.begin() + 1);
 }
 
+// A shirt that was lost lately is not so much smaller at another place at once: something else has its colours there (relative size and motion, 6.3.1).
+bool ShirtClassifier::is_scrap_elsewhere(const PersonImage& input, Label person) const {
+  constexpr int kLately = 90;      // images
+  constexpr double kSmall = 0.25;  // of the area that it had
+  if (person != person_ || missed_ == 0 || missed_ > kLately) return false;
+  const auto teacher = teacher_of(input);
+  if (teacher && teacher->person == person) return false;
+  return box_.area() < kSmall * place_.area() && intersection(box_, place_).empty();
+}
+
 // Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
 // far away it is; how large it was where it was followed does. Beside a passer-by it is followed on; where the head of somebody else is known, that one is
 // named.
@@ -183,7 +213,9 @@ void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk)
   if (++since_place_learned_ < parameters_.images_between || followed_.contrast() < kMinContrast) return;
   const Box middle{trunk.x + kMargin * trunk.width, trunk.y + kMargin * trunk.height,
                    (1.0 - 2.0 * kMargin) * trunk.width, (1.0 - 2.0 * kMargin) * trunk.height};
-  colors_.add(*followed_person_, thinned(region_colors(input.image, middle)), {}, light_.of(*followed_person_));
+  std::vector<imaging::Rgb> samples = thinned(region_colors(input.image, middle));
+  leave_out_background(samples, colors_of_both(input.image, beside_trunk(trunk)));
+  colors_.add(*followed_person_, samples, {}, light_.of(*followed_person_));
   since_place_learned_ = 0;
   map_is_due_ = true;
 }
@@ -219,6 +251,7 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
   auto person = find(input);
   // In a light that is only supposed something else may have the shirt's colours: it has to be where the shirt was.
   if (supposed_ && person == person_ && overlap(box_, place_) < kSamePlace) person.reset();
+  if (person && is_scrap_elsewhere(input, *person)) person.reset();
   const auto& marker = input.marker;
   if (person && marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) person.reset();
   person = find_at_place(input, person);
@@ -266,14 +299,10 @@ std::optional<ShirtClassifier::Teacher> ShirtClassifier::teacher_of(const Person
 
 void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   const SamplingRegions& regions = teacher.regions;
-  auto background = region_colors(input.image, regions.background[0]);
-  const auto right = region_colors(input.image, regions.background[1]);
-  background.insert(background.end(), right.begin(), right.end());
+  auto background = colors_of_both(input.image, regions.background);
   // Where a shirt's place ends there are other colours: without them it would grow into a road or a wall of its own.
-  for (const Box& beside : beside_trunk(trunk_below(teacher.face))) {
-    const auto colors = region_colors(input.image, beside);
-    background.insert(background.end(), colors.begin(), colors.end());
-  }
+  const auto beside = colors_of_both(input.image, beside_trunk(trunk_below(teacher.face)));
+  background.insert(background.end(), beside.begin(), beside.end());
   const Label person = *teacher.person;
   colors_.learn(person, region_colors(input.image, regions.shirt), background);
   if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);

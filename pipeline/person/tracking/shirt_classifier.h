@@ -101,6 +101,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
   std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
+  [[nodiscard]] bool is_scrap_elsewhere(const PersonImage& input, Label person) const;
   [[nodiscard]] bool is_passer_by(const Teacher& teacher) const;
   void follow_from(const Teacher& teacher);
   void learn_at_place(const PersonImage& input, const Box& trunk);
@@ -128,7 +129,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::optional<Label> followed_person_;  // whose
   bool is_sized_by_place_ = false;        // how far away the shirt is says the trunk, not its blob
   int since_place_learned_ = 0;
-  int missed_ = 0;          // images since then
+  int missed_ = 0;          // images since then; 0: it was found in the last one
   bool supposed_ = false;   // the map is of a light that is only supposed
   int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
   int since_negative_ = 0;  // images since negative samples were learned; 0: never
