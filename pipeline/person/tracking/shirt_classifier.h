@@ -55,7 +55,8 @@ struct ShirtParameters {
 /// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
 /// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
 /// last face or marker on it is followed at its place too (PartPlace): a blob that is elsewhere, or of another size, is not believed while it is there, and what
-/// it looks like there is added to its colours now and then, a bounded number of samples at a time.
+/// it looks like there is added to its colours now and then, a bounded number of samples at a time, without what is more frequent beside it. Just after a loss
+/// a much smaller blob elsewhere is not believed.
 ///
 /// Threads: one. Allocates when it is trained.
 class ShirtClassifier final : public Classifier<PersonImage> {
