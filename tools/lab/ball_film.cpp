@@ -24,38 +24,8 @@ constexpr double kHigh_m = 2.2;  // above what the camera sees
 constexpr double kTable_x = 7.15;
 constexpr double kMiddle_y = 3.2;
 
-/// A stop of a ball's way and what happens from there on.
-struct Stop {
-  std::array<double, 3> at;
-  double speed_mps;
-  double wait_s;
-  BallScene then;
-};
-
-/// Out of the stops a walk; in `scenes` from when on which scene plays.
-sim::WalkSpec walk_of(const std::vector<Stop>& stops, double start_s, Random& random,
-                      std::vector<std::pair<double, BallScene>>& scenes) {
-  sim::WalkSpec walk;
-  walk.start_s = start_s;
-  double now_s = start_s;
-  std::array<double, 3> last = stops.front().at;
-  for (const Stop& stop : stops) {
-    sim::StopSpec spec;
-    spec.at_m = {stop.at[0] + random.uniform(-0.02, 0.02), stop.at[1] + random.uniform(-0.05, 0.05), stop.at[2]};
-    if (walk.stop.empty()) last = spec.at_m;
-    spec.speed_mps = stop.speed_mps * random.uniform(0.95, 1.05);
-    spec.wait_s = stop.wait_s;
-    now_s += std::hypot(spec.at_m[0] - last[0], spec.at_m[1] - last[1], spec.at_m[2] - last[2]) / spec.speed_mps;
-    scenes.emplace_back(now_s, stop.then);
-    now_s += spec.wait_s;
-    last = spec.at_m;
-    walk.stop.push_back(spec);
-  }
-  return walk;
-}
-
 /// About 48 s: above the table, under it in shadow and lit, out of the image and back.
-std::vector<Stop> orange_way() {
+std::vector<BallStop> orange_way() {
   constexpr double kUp = kTable_m + 0.02;
   using enum BallScene;
   return {
@@ -84,7 +54,7 @@ std::vector<Stop> orange_way() {
   };
 }
 
-std::vector<Stop> brown_way() {
+std::vector<BallStop> brown_way() {
   using enum BallScene;
   return {
       {{kTable_x, 3.1, kHigh_m}, 0.8, 0.0, kBrown}, {{kTable_x, 3.1, 1.05}, 0.8, 0.7, kBrown},
@@ -93,12 +63,13 @@ std::vector<Stop> brown_way() {
   };
 }
 
-sim::BallSpec ball(const std::string& name, sim::WalkSpec walk) {
+sim::BallSpec ball(const std::string& name, sim::WalkSpec walk, std::vector<sim::PresenceSpec> is_there) {
   sim::BallSpec spec;
   spec.name = name;
   spec.material = name;
   spec.radius_m = kRadius_m;
   spec.walk = std::move(walk);
+  spec.presence = std::move(is_there);
   return spec;
 }
 
@@ -128,6 +99,26 @@ std::string_view to_string(BallScene scene) {
   return kNames.at(static_cast<std::size_t>(scene));
 }
 
+sim::WalkSpec ball_walk(const std::vector<BallStop>& stops, double start_s, Random& random, BallScenes& scenes) {
+  sim::WalkSpec walk;
+  walk.start_s = start_s;
+  double now_s = start_s;
+  std::array<double, 3> last = stops.front().at_m;
+  for (const BallStop& stop : stops) {
+    sim::StopSpec spec;
+    spec.at_m = {stop.at_m[0] + random.uniform(-0.02, 0.02), stop.at_m[1] + random.uniform(-0.05, 0.05), stop.at_m[2]};
+    if (walk.stop.empty()) last = spec.at_m;
+    spec.speed_mps = stop.speed_mps * random.uniform(0.95, 1.05);
+    spec.wait_s = stop.wait_s;
+    now_s += std::hypot(spec.at_m[0] - last[0], spec.at_m[1] - last[1], spec.at_m[2] - last[2]) / spec.speed_mps;
+    scenes.emplace_back(now_s, stop.then);
+    now_s += spec.wait_s;
+    last = spec.at_m;
+    walk.stop.push_back(spec);
+  }
+  return walk;
+}
+
 Result<std::unique_ptr<BallFilm>> BallFilm::make(std::uint64_t seed) {
   const std::filesystem::path file = std::filesystem::path(source_path("config/worlds")) / "home.toml";
   auto spec = config::read_file<sim::WorldSpec>(file);
@@ -137,30 +128,36 @@ Result<std::unique_ptr<BallFilm>> BallFilm::make(std::uint64_t seed) {
   spec->object.clear();
   light_up(*spec);
   Random random = Random(seed).fork(0xBA11);
-  std::vector<std::pair<double, BallScene>> scenes;
-  spec->material.push_back(paint("orange ball", {0.93, 0.47, 0.12}));
-  spec->material.push_back(paint("brown ball", {0.46, 0.25, 0.10}));
-  spec->ball = {ball("orange ball", walk_of(orange_way(), 0.5, random, scenes))};
-  const double gone_s = scenes.back().first;
-  std::vector<std::pair<double, BallScene>> of_brown;
-  spec->ball.push_back(ball("brown ball", walk_of(brown_way(), gone_s, random, of_brown)));
+  Script script;
+  script.errors = sim::CalibrationErrors::none();
+  script.orange = ball_walk(orange_way(), 0.5, random, script.scenes);
+  BallScenes of_brown;
+  script.brown = ball_walk(brown_way(), script.scenes.back().first, random, of_brown);
   const double aside_m = random.uniform(-0.25, 0.25);
   const double turned_deg = random.uniform(-3.0, 3.0);
   spec->robot[0].start_m = {kTable_x - kBack_m + random.uniform(-0.2, 0.2), kMiddle_y + aside_m, 0.0};
   spec->robot[0].start_heading_deg = turned_deg;
+  return make(std::move(*spec), file, std::move(script), seed);
+}
 
-  auto world = sim::build_world(*spec, file);
-  if (!world) return tl::unexpected(world.error());
-  std::unique_ptr<BallFilm> film(new BallFilm(std::move(*world), seed));
+Result<std::unique_ptr<BallFilm>> BallFilm::make(sim::WorldSpec world, const std::filesystem::path& name, Script script,
+                                                 std::uint64_t seed) {
+  world.material.push_back(paint("orange ball", {0.93, 0.47, 0.12}));
+  world.material.push_back(paint("brown ball", {0.46, 0.25, 0.10}));
+  world.ball = {ball("orange ball", std::move(script.orange), std::move(script.orange_is_there)),
+                ball("brown ball", std::move(script.brown), std::move(script.brown_is_there))};
+  auto built = sim::build_world(world, name);
+  if (!built) return tl::unexpected(built.error());
+  std::unique_ptr<BallFilm> film(new BallFilm(std::move(*built), seed));
   const sim::Scene& scene = film->world_.scene;
-  film->scenes_ = std::move(scenes);
+  film->scenes_ = std::move(script.scenes);
   for (std::size_t i = 0; i < scene.figures.size(); ++i) {
     if (scene.figures[i].name == "orange ball") film->orange_ = static_cast<int>(i);
     if (scene.figures[i].name == "brown ball") film->brown_ = static_cast<int>(i);
   }
   film->X_WC_ = sim::scripted_robots(film->world_, 0.0).front() * sim::mount_of(scene.robots.front());
-  film->camera_ = camera_of(scene.robots.front().camera);
-  const sim::CalibratedCopy copy = sim::calibrated_copy(scene, 0, sim::CalibrationErrors::none(), 1);
+  const sim::CalibratedCopy copy = sim::calibrated_copy(scene, 0, script.errors, static_cast<std::uint32_t>(seed));
+  film->camera_ = camera_of(copy.camera);
   auto map = map_of(copy.map);
   if (!map) return tl::unexpected(map.error());
   film->map_ = std::move(*map);
@@ -180,7 +177,8 @@ BallFilm::Shot BallFilm::shoot(int number) {
   photographer_->take({{state, X_WC_}}, world_.sensor,
                       {static_cast<std::uint32_t>(seed_), static_cast<std::uint64_t>(number)},
                       {yuyv.data(), camera.width_px, camera.height_px, std::ptrdiff_t{2} * camera.width_px});
-  Shot shot{image_of_yuyv(std::move(yuyv), camera.width_px, camera.height_px), BallScene::kAboveTable, {}, {}};
+  Shot shot{
+      image_of_yuyv(std::move(yuyv), camera.width_px, camera.height_px), BallScene::kAboveTable, {}, {}, 0.0, 0.0};
   for (const auto& [from_s, scene] : scenes_) {
     if (at_s >= from_s) shot.scene = scene;
   }
@@ -191,6 +189,7 @@ BallFilm::Shot BallFilm::shoot(int number) {
   if (orange.in_view) shot.orange = orange.visible;
   if (brown.in_view) shot.brown = brown.visible;
   shot.lit = orange.lit_px / std::max(1.0, static_cast<double>(orange.visible_px));
+  shot.orange_height_m = state.X_WJ[static_cast<std::size_t>(orange_)].front().translation().z() - kRadius_m;
   return shot;
 }
 

@@ -80,6 +80,7 @@ Result<Report> figure_6_8(const Setting& setting);
 Result<Report> table_5_1(const Setting& setting);
 Result<Report> section_5_4_3(const Setting& setting);
 Result<Report> shaded_ball(const Setting& setting);
+Result<Report> homes_5_4_3(const Setting& setting);
 Result<Report> lamps_5_1(const Setting& setting);
 Result<Report> homes_5_1(const Setting& setting);
 Result<Report> lamp_cases(const Setting& setting);
