@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
@@ -26,6 +27,11 @@ Result<BallTracker> learned_ball(const Image& image, const Box& box, const confi
   auto tracker = color::IntegratedTracker::create(learned->model, parameters, image.bgr.cols, image.bgr.rows, focal_px);
   if (!tracker) return tl::unexpected(tracker.error());
   return BallTracker(std::move(*tracker), row);
+}
+
+stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
+  const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
+  return given_masks({masks.width, masks.height, nothing, nothing});
 }
 
 namespace {

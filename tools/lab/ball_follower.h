@@ -19,6 +19,9 @@ Result<BallTracker> learned_ball(const Image& image, const Box& box, const confi
                                  const color::IntegratedParameters& parameters, const runtime::StageParameters& row,
                                  double focal_px);
 
+/// Masks of the same size that say: nothing is shaded.
+stages::ShadowMasks all_lit(const render::ShadeMasks& masks);
+
 /// What `cgsr-lab follow-ball` does, the program that is counted: follows the ball through FOLDER/img, learned from its first image and the
 /// first box of FOLDER/groundtruth.txt, with FOLDER/mask.png over every image or without a mask. The tracker's work is marked as the
 /// stage "ball".

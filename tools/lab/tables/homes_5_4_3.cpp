@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,13 +13,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "hal/sim/generator/home.h"
 #include "pipeline/stages/shade_stage.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
+#include "tools/lab/ball_picture.h"
 #include "tools/lab/ball_scoring.h"
 #include "tools/lab/configurations.h"
 #include "tools/lab/drawn_home.h"
@@ -123,40 +122,12 @@ Result<stages::ShadowMasks> masks_for(const BallFilm& film, const config::Robot&
                   kStated.lamp(film.p_WL() + normal3(kStated.lamp_sigma_m)));
 }
 
-void draw_box(const std::optional<Box>& box, const cv::Scalar& color, cv::Mat& picture) {
-  if (box) cv::rectangle(picture, cv::Rect2d(box->x, box->y, box->width, box->height), color, 2);
-}
-
-Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, std::uint32_t home,
-                   const std::array<std::optional<Box>, kContenders>& said) {
-  cv::Mat drawn = shot.image.bgr.clone();
-  const cv::Mat cells(masks.height, masks.width, CV_8UC1, const_cast<std::uint8_t*>(masks.possibly_shaded.data()));
-  cv::Mat shaded;
-  cv::resize(cells, shaded, drawn.size(), 0.0, 0.0, cv::INTER_NEAREST);
-  cv::Mat blue;
-  cv::addWeighted(drawn, 0.75, cv::Mat(drawn.size(), drawn.type(), cv::Scalar(60, 15, 0)), 1.0, 0.0, blue);
-  blue.copyTo(drawn, shaded);
-  draw_box(shot.orange, {255, 255, 255}, drawn);
-  draw_box(said[kWithout], {0, 220, 255}, drawn);
-  draw_box(said[kWithMask], {0, 255, 0}, drawn);
-  Picture picture{fmt::format("home {}, {}: with the mask green, without yellow, truth white; blue: may lie in shade",
-                              home, kPartNames[part_of(shot)]),
-                  {}};
-  cv::imencode(".jpg", drawn, picture.jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
-  return picture;
-}
-
-/// A mask that says: nothing is shaded.
-stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
-  const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
-  return given_masks({masks.width, masks.height, nothing, nothing});
-}
-
 class HomeTake {
  public:
   HomeTake(const Setting& setting, const config::Robot& robot) : setting_(&setting), robot_(robot) {}
 
-  Result<Take> run(const sim::GeneratedHome& home, const TableInHome& table, Random& random) {
+  /// \return nothing: the ball is not in the first image, from which it is learned.
+  Result<std::optional<Take>> run(const sim::GeneratedHome& home, const TableInHome& table, Random& random) {
     auto [script, lasts_s] = play_at(table, random);
     const auto seed = static_cast<std::uint32_t>(random.next());
     auto film = BallFilm::make(world_at(home, table), home.world.name, std::move(script), seed);
@@ -164,7 +135,7 @@ class HomeTake {
     const auto masks = masks_for(**film, robot_, random);
     if (!masks) return tl::unexpected(masks.error());
     BallFilm::Shot shot = (*film)->shoot(0);
-    if (!shot.orange) return fail(fmt::format("home {}: the ball is not in the first image", home.seed));
+    if (!shot.orange) return std::nullopt;
     const std::array<stages::ShadowMasks, kContenders> given{*masks, stages::ShadowMasks{}, all_lit(*masks->masks)};
     std::vector<BallTracker> trackers;
     for (std::size_t i = 0; i < kContenders; ++i) {
@@ -187,7 +158,10 @@ class HomeTake {
         if (ball.found) said[i] = ball.box;
         take.scores[i][part].add(shot.orange, shot.brown, said[i]);
       }
-      if (++of_part[part] == 10) take.pictures.push_back(picture_of(shot, *masks->masks, home.seed, said));
+      if (++of_part[part] == 10) {
+        take.pictures.push_back(picture_of(shot, *masks->masks, said[kWithMask], said[kWithout],
+                                           fmt::format("home {}, {}", home.seed, kPartNames[part])));
+      }
     }
     return take;
   }
@@ -306,8 +280,12 @@ Result<Report> homes_5_4_3(const Setting& setting) {
     setting.progress(fmt::format("home {} of {}: {}", takes.size() + 1, setting.trials, home->seed));
     auto take = in_home.run(*home, **table, random);
     if (!take) return tl::unexpected(take.error());
-    std::ranges::move(take->pictures, std::back_inserter(report.pictures));
-    takes.push_back(std::move(*take));
+    if (!*take) {
+      ++without_table;
+      continue;
+    }
+    std::ranges::move((*take)->pictures, std::back_inserter(report.pictures));
+    takes.push_back(std::move(**take));
   }
   report.title = fmt::format("a ball in light and shade in {} drawn homes", setting.trials);
   for (const Contender i : {kWithMask, kWithout, kBrightOnly}) add_contender(i, takes, setting.seed, report);

@@ -16,12 +16,12 @@
 
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "pipeline/render/shadow_volumes.h"
 #include "pipeline/stages/shade_stage.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
+#include "tools/lab/ball_picture.h"
 #include "tools/lab/ball_scoring.h"
 #include "tools/lab/configurations.h"
 #include "tools/lab/counting.h"
@@ -57,38 +57,10 @@ std::optional<Box> box_of(const color::BallSighting& seen) {
   return seen.found ? std::optional(seen.box) : std::nullopt;
 }
 
-void draw_box(const std::optional<Box>& box, const cv::Scalar& color, cv::Mat& picture) {
-  if (box) cv::rectangle(picture, cv::Rect2d(box->x, box->y, box->width, box->height), color, 2);
-}
-
-Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, const std::optional<Box>& with,
-                   const std::optional<Box>& without) {
-  cv::Mat drawn = shot.image.bgr.clone();
-  for (int y = 0; y < drawn.rows; ++y) {
-    for (int x = 0; x < drawn.cols; ++x) {
-      const int cell = y * masks.height / drawn.rows * masks.width + x * masks.width / drawn.cols;
-      auto& pixel = drawn.at<cv::Vec3b>(y, x);
-      if (masks.possibly_shaded[static_cast<std::size_t>(cell)] != 0) pixel = pixel * 0.75 + cv::Vec3b(60, 15, 0);
-    }
-  }
-  draw_box(without, {0, 220, 255}, drawn);
-  draw_box(with, {0, 255, 0}, drawn);
-  Picture picture{fmt::format("{}: with the mask green, without yellow; blue: may lie in shade", to_string(shot.scene)),
-                  {}};
-  cv::imencode(".jpg", drawn, picture.jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
-  return picture;
-}
-
 /// The film's masks: the stage shade with the true map, lamp and pose, told how far a robot's would be off.
 Result<stages::ShadowMasks> masks_for(const BallFilm& film, const config::Robot& robot) {
   stages::ShadeStage stage(std::make_shared<const world::Map>(film.map()), film.camera(), robot.shade);
   return masks_of(stage, row_of<stages::ShadeStage>(robot), film.X_WC(), kStated.pose(), kStated.lamp(film.p_WL()));
-}
-
-/// A mask that says: nothing is shaded.
-stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
-  const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
-  return given_masks({masks.width, masks.height, nothing, nothing});
 }
 
 /// Masks of the true map, lamp and pose, widened by a cell: of a robot that knows no errors.
@@ -180,7 +152,10 @@ Result<Take> run_take(const Setting& setting, const config::Robot& robot, std::u
         (k % 2 == 0 ? take.factor_with : take.factor_without)[k / 2].add(shot.orange, shot.brown, box);
       }
     }
-    if (++of_scene[shot.scene] == 12) take.pictures.push_back(picture_of(shot, masks, said[kWithMask], said[kWithout]));
+    if (++of_scene[shot.scene] == 12) {
+      take.pictures.push_back(
+          picture_of(shot, masks, said[kWithMask], said[kWithout], std::string(to_string(shot.scene))));
+    }
     if (number % 10 == 0) setting.progress(fmt::format("take {}, image {}", seed, number));
   }
   return take;
