@@ -12,7 +12,7 @@ import sys
 from listed_problems import report
 
 ROOMS = [f"pipeline/{room}" for room in
-         ("color", "localization", "illumination", "render", "behavior", "imaging", "geometry", "motion", "stages",
+         ("color", "localization", "illumination", "render", "shade", "behavior", "imaging", "geometry", "motion", "stages",
           "calibration", "world", "person")]
 # What chapters 2 to 6 of the dissertation number, by the first letters of its name in a citation.
 NUMBERED = {

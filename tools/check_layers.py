@@ -30,6 +30,7 @@ ALLOWED = {
     "pipeline/geometry": ["platform"],
     "pipeline/world": ["platform", "pipeline/geometry"],
     "pipeline/render": ["platform", "pipeline/geometry", "pipeline/world"],
+    "pipeline/shade": ["platform", "pipeline/geometry", "pipeline/world", "pipeline/render"],
     **{room: ["platform", "pipeline/imaging", *COLOR[:i]] for i, room in enumerate(COLOR)},
     "pipeline/localization": ["platform", "pipeline/geometry", "pipeline/imaging", "pipeline/world", "pipeline/render"],
     "pipeline/global_localization": ["platform", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/localization"],
@@ -37,7 +38,7 @@ ALLOWED = {
     "pipeline/person": ["platform", "pipeline/geometry", "pipeline/imaging", *COLOR],
     "pipeline/behavior": ["platform", "pipeline/geometry", "pipeline/world", *CHAPTERS],
     "pipeline/stages": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/geometry", "pipeline/imaging", "pipeline/world",
-                        "pipeline/render", "pipeline/behavior", "pipeline/global_localization", *CHAPTERS],
+                        "pipeline/render", "pipeline/shade", "pipeline/behavior", "pipeline/global_localization", *CHAPTERS],
     "pipeline/motion": ["platform", HAL_INTERFACES, "pipeline/runtime", "pipeline/behavior"],
     "pipeline/calibration": ["platform", "pipeline/geometry", "pipeline/illumination", "pipeline/stages"],
     "pipeline/mapping": ["platform", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/localization"],
@@ -62,7 +63,7 @@ PROGRAM = {
 OUTERMOST = ["tools/lab", "tools/map", "tools/sim", "tests", "docs/guides"]  # the last one holds the guides' examples
 # A chapter knows no device, thread, clock or environment.
 FORBIDDEN_IN_CHAPTERS = re.compile(r'^\s*#include\s+[<"](thread|mutex|condition_variable|fcntl\.h|unistd\.h|sys/|platform/(clock|thread|stop|service)\.h|hal/)')
-PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/behavior", "pipeline/mapping", "pipeline/global_localization", *CHAPTERS]
+PURE = ["pipeline/imaging", "pipeline/geometry", "pipeline/world", "pipeline/render", "pipeline/shade", "pipeline/behavior", "pipeline/mapping", "pipeline/global_localization", *CHAPTERS]
 # Peers are linked by the lab alone; the simulator's truth is for tests, the lab and the simulator's own tools.
 TRUTH_ROOMS = ["tests", "tools/lab", "tools/sim", "hal/sim"]
 ONLY_IN = {"opencv2/tracking": ["tools/lab"], "hal/sim/truth.h": TRUTH_ROOMS, "hal/sim/render/truth_images.h": TRUTH_ROOMS,

@@ -16,7 +16,7 @@ double max_sigma(const Eigen::Matrix3d& covariance) {
 
 constexpr std::size_t kMasks = 6;  // written, last, two on their way to housekeeping, one read there, one to spare
 
-render::ShadeMasks empty_masks(const render::ShadeParameters& parameters) {
+shade::ShadeMasks empty_masks(const shade::ShadeParameters& parameters) {
   const auto cells = static_cast<std::size_t>(parameters.width) * static_cast<std::size_t>(parameters.height);
   return {parameters.width, parameters.height, std::vector<std::uint8_t>(cells), std::vector<std::uint8_t>(cells)};
 }
@@ -56,7 +56,7 @@ ShadeStage::ShadeStage(std::shared_ptr<const world::Map> map, const geometry::Ca
       camera_(camera),
       parameters_(parameters),
       given_(known_lamp(parameters.lamp)),
-      volumes_(*map_, parameters.masks),
+      volumes_(std::make_shared<shade::ShadowVolumes>(*map_, parameters.masks)),
       masks_(kMasks, empty_masks(parameters.masks)) {}
 
 std::optional<ShadowMasks> ShadeStage::update(WorkBudget& budget, const runtime::Aged<PoseEstimate>& pose,
@@ -92,27 +92,27 @@ std::optional<ShadowMasks> ShadeStage::masks_for(WorkBudget& budget, const geome
   if (!(lamp_sigma_m <= parameters_.max_lamp_sigma_m)) return ShadowMasks{ShadeStatus::kLampUnsure, {}};
   // Silhouettes cost far more than a new view of them: an estimate that wanders a little keeps the old ones, at the price of its way. A turn
   // either works on new ones or looks: both together would exceed what a turn may cost.
-  const Eigen::Vector3d way = lamp->p_WL - volumes_.lamp();
+  const Eigen::Vector3d way = lamp->p_WL - volumes_->lamp();
   const bool usable = way.norm() <= parameters_.max_lamp_sigma_m;
   const bool looks = way.norm() <= parameters_.max_lamp_shift_m || (usable && !looked_last_);
   looked_last_ = looks;
   if (!looks) {
-    volumes_.prepare(place_to_prepare(lamp->p_WL), budget);
+    volumes_->prepare(place_to_prepare(lamp->p_WL), budget);
     if (usable) return std::nullopt;
     return ShadowMasks{ShadeStatus::kPreparing, {}};
   }
-  const render::ShadeErrors errors{lamp->covariance + way * way.transpose(), covariance};
+  const shade::ShadeErrors errors{lamp->covariance + way * way.transpose(), covariance};
   auto masks = masks_.take();
   if (!masks) return ShadowMasks{ShadeStatus::kNoRoom, {}};
-  masks.edit() = volumes_.look(X_WC, camera_, volumes_.lamp(), errors);
-  return ShadowMasks{ShadeStatus::kMasked, std::move(masks)};
+  masks.edit() = volumes_->look(X_WC, camera_, volumes_->lamp(), errors);
+  return ShadowMasks{ShadeStatus::kMasked, std::move(masks), {}, volumes_};
 }
 
 // What is being prepared is not begun anew for every image's estimate, only where it lies elsewhere, or further off than what there is.
 Eigen::Vector3d ShadeStage::place_to_prepare(const Eigen::Vector3d& p_WL) const {
-  const double off_m = (p_WL - volumes_.next_lamp()).norm();
-  const bool goes_on = off_m <= parameters_.max_lamp_sigma_m && off_m <= (p_WL - volumes_.lamp()).norm();
-  return goes_on ? volumes_.next_lamp() : p_WL;
+  const double off_m = (p_WL - volumes_->next_lamp()).norm();
+  const bool goes_on = off_m <= parameters_.max_lamp_sigma_m && off_m <= (p_WL - volumes_->lamp()).norm();
+  return goes_on ? volumes_->next_lamp() : p_WL;
 }
 
 }  // namespace cgsr::stages

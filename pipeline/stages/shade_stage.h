@@ -9,7 +9,7 @@
 #include "pipeline/geometry/camera.h"
 #include "pipeline/geometry/pose.h"
 #include "pipeline/illumination/lamp_filter.h"
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 #include "pipeline/stages/events.h"
 #include "pipeline/stages/probes_stage.h"
 #include "pipeline/world/map.h"
@@ -38,7 +38,7 @@ struct ShadeStageParameters {
   double max_lamp_sigma_m = 0.3;
   double max_lamp_shift_m = 0.01;
   GivenLamp lamp{};
-  render::ShadeParameters masks;
+  shade::ShadeParameters masks;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -68,8 +68,10 @@ std::string_view to_string(ShadeStatus status);
 /// What lies in shadow in an image.
 struct ShadowMasks {
   ShadeStatus status = ShadeStatus::kNoMap;
-  Lease<render::ShadeMasks> masks;  ///< of this image; empty: none, and `status` says why.
-  Events events{};                  ///< changes of the status.
+  Lease<shade::ShadeMasks> masks;  ///< of this image; empty: none, and `status` says why.
+  Events events{};                 ///< changes of the status.
+  std::shared_ptr<const shade::ShadowVolumes>
+      volumes{};  ///< that the masks are of, to be asked of single places; by the vision thread alone.
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -114,8 +116,8 @@ class ShadeStage {
   geometry::Camera camera_;
   ShadeStageParameters parameters_;
   illumination::KnownLamp given_;
-  render::ShadowVolumes volumes_;
-  Pool<render::ShadeMasks> masks_;
+  std::shared_ptr<shade::ShadowVolumes> volumes_;
+  Pool<shade::ShadeMasks> masks_;
   bool looked_last_ = false;  ///< the last turn gave masks: while a new place is prepared, the next does not.
   ShadeStatus status_ = ShadeStatus::kNoMap;  // of the last output
 };

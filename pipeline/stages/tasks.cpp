@@ -7,6 +7,7 @@
 
 #include "pipeline/person/context.h"
 #include "pipeline/person/face/face_detector.h"
+#include "pipeline/stages/ball_track.h"
 
 namespace cgsr::stages {
 namespace {
@@ -41,7 +42,7 @@ behavior::LampBelief lamp_belief(const runtime::Aged<LampReport>& aged, const ru
   belief.probes_check = report->probes_check.state;
   belief.lamp_proof = report->lamp_proof.state;
   belief.seen = report->single_image.status == illumination::LampStatus::kFound;
-  const ShadowMasks* const masks = shade.within(TrackStage::kMaxMaskAge);
+  const ShadowMasks* const masks = shade.within(kMaxMaskAge);
   belief.masked = masks != nullptr && masks->status == ShadeStatus::kMasked;
   belief.known = report->known;
   if (!report->known) return belief;

@@ -1,25 +1,8 @@
 #include "pipeline/stages/track_stage.h"
 
+#include "pipeline/stages/ball_track.h"
+
 namespace cgsr::stages {
-namespace {
-
-color::ShadeMaskView mask_of(const runtime::Aged<ShadowMasks>& shade, Duration max_age) {
-  const ShadowMasks* const masks = shade.within(max_age);
-  if (masks == nullptr || !masks->masks) return {};
-  const render::ShadeMasks& cells = *masks->masks;
-  return {cells.possibly_shaded.data(), cells.width, cells.height, cells.width};
-}
-
-ObjectTrack track_ball(color::IntegratedTracker& tracker, const ImageView& image, const color::ShadeMaskView& mask,
-                       WorkBudget& budget) {
-  ObjectTrack track;
-  track.ball = tracker.track(image, mask, budget);
-  track.object = {track.ball.found, track.ball.box, track.ball.divergence, track.ball.light, track.ball.light, 0.0};
-  return track;
-}
-
-}  // namespace
-
 TrackedObjects TrackStage::update(WorkBudget& budget, const ImageView& image, const runtime::Aged<View>& view,
                                   const runtime::Aged<color::SearchResult>& matches,
                                   const runtime::Aged<ShadowMasks>& shade, const Requests& requests) {
@@ -27,7 +10,7 @@ TrackedObjects TrackStage::update(WorkBudget& budget, const ImageView& image, co
   last_.tracks.front() = {};
   if (!requests.track) return last_;
   if (auto* const ball = std::get_if<color::IntegratedTracker>(&tracker_)) {
-    last_.tracks.front() = track_ball(*ball, image, mask_of(shade, kMaxMaskAge), budget);
+    last_.tracks.front() = track_ball(*ball, image, shade, budget);
     return last_;
   }
   auto& tracker = std::get<color::Tracker>(tracker_);

@@ -22,7 +22,6 @@ class TrackStage {
   static constexpr std::string_view kMeaning =
       "Which of the windows the object is, and the box that fits (chapter 3, 5.3).";
   static constexpr runtime::StageParameters kRow{1, 0, 5500, 4, runtime::OnOverrun::kSkip};
-  static constexpr Duration kMaxMaskAge = seconds(0.5);     ///< of the shadow masks that are used.
   static constexpr Duration kMaxMatchesAge = seconds(0.2);  ///< of the search's windows that are used.
 
   explicit TrackStage(color::Tracker tracker) : tracker_(std::move(tracker)) {}

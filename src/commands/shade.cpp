@@ -37,7 +37,7 @@ struct Options {
 };
 
 /// Darkens what lies in shade and tints blue what may: the masks as the robot has them, cell by cell.
-void draw_masks(const render::ShadeMasks& masks, cv::Mat& picture) {
+void draw_masks(const shade::ShadeMasks& masks, cv::Mat& picture) {
   for (int y = 0; y < picture.rows; ++y) {
     for (int x = 0; x < picture.cols; ++x) {
       const int column = std::min(x * masks.width / picture.cols, masks.width - 1);
@@ -110,7 +110,7 @@ int run_shade(const Options& options) {
   }
   const auto shade = masks_of(options, map, *camera, *X_WC);
   if (!shade) return report(shade.error());
-  const render::ShadeMasks& masks = *shade->masks;
+  const shade::ShadeMasks& masks = *shade->masks;
   draw_masks(masks, picture);
   if (const auto written = write_picture(options.output, picture); !written) return report(written.error());
   fmt::print("{}: {:.1f} % of the surfaces seen lie in shade, {:.1f} % of the image may\n", options.output,

@@ -69,7 +69,7 @@ const cv::Mat& Overlay::draw(const ImageView& image, const OverlayFacts& facts) 
   return picture_;
 }
 
-void Overlay::draw_shade(const render::ShadeMasks& shade, cv::Mat& top) {
+void Overlay::draw_shade(const shade::ShadeMasks& shade, cv::Mat& top) {
   const auto mask = [&shade](const std::vector<std::uint8_t>& cells) {
     return cv::Mat(shade.height, shade.width, CV_8UC1, const_cast<std::uint8_t*>(cells.data()));  // read only
   };

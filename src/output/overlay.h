@@ -8,7 +8,7 @@
 #include <opencv2/core.hpp>
 
 #include "pipeline/color/learn/light.h"
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 #include "platform/box.h"
 #include "platform/image_view.h"
 
@@ -29,7 +29,7 @@ struct OverlayFacts {
   std::optional<color::Light> light;      ///< that the tracker follows; finer than the grid.
   std::optional<color::Light> plurality;  ///< of the grid's lights over the last second.
   double divergence = 0.0;
-  const render::ShadeMasks* shade =
+  const shade::ShadeMasks* shade =
       nullptr;  ///< what may lie in shadow: tinted, and outlined where the surface itself does.
   std::vector<OverlayPerson> people;
   std::vector<std::string> lines;  ///< free text below the image, one line each; at most five are drawn.
@@ -50,7 +50,7 @@ class Overlay {
  private:
   void draw_box(const Box& box, const cv::Scalar& color, int thickness);
   void draw_person(const OverlayPerson& person);
-  void draw_shade(const render::ShadeMasks& shade, cv::Mat& top);
+  void draw_shade(const shade::ShadeMasks& shade, cv::Mat& top);
   void draw_panel(const OverlayFacts& facts);
 
   int width_px_;

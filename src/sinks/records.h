@@ -20,7 +20,7 @@ struct VisionReport {
 /// An image on its way to the sinks, with the masks that belong to it.
 struct Picture {
   ImageLease image;
-  Lease<render::ShadeMasks> masks;  ///< empty: there are none.
+  Lease<shade::ShadeMasks> masks;  ///< empty: there are none.
 };
 
 /// What the switch worker reports about one switching.

@@ -50,7 +50,9 @@ void VisionTask::step_without_image(MonoTime now) {
   runner_.begin_frame({now, 0, false});
   in_time_.missed();
   links_.images_in_time.store(in_time_.enough(), std::memory_order_relaxed);
-  links_.reports.push(sinks::VisionReport{{}, runner_.end_frame()});
+  sinks::VisionReport report;
+  report.record = runner_.end_frame();
+  links_.reports.push(std::move(report));
 }
 
 void VisionTask::report(const stages::FrameResult& result, ImageLease image) {
@@ -59,6 +61,7 @@ void VisionTask::report(const stages::FrameResult& result, ImageLease image) {
   sinks::VisionReport report{result, record};
   report.frame.view.value = {};
   report.frame.shade.value.masks = {};
+  report.frame.shade.value.volumes = {};
   links_.reports.push(std::move(report));
 }
 

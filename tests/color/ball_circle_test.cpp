@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 
+#include "pipeline/imaging/color_code.h"
 #include "tests/color/ball_scene.h"
 
 namespace cgsr::color {
@@ -55,6 +57,46 @@ TEST(BallCircleProperty, FindsTheCircleFromAnyPlaceOnTheBall) {
     EXPECT_NEAR(fit.circle.y_px, ball.y_px, near_px) << trial;
     EXPECT_NEAR(fit.circle.radius_px, ball.radius_px, near_px) << trial;
   }
+}
+
+/// What is learned from a ball of which something grey hides a little.
+BallModel model_of_a_partly_hidden_ball(const imaging::Rgb& ball_color, const imaging::Rgb& hides) {
+  constexpr Circle kBall{100.0, 60.0, 16.0};
+  auto painting = test::ball_room();
+  test::paint_ball(painting, kBall, 1.0, ball_color);
+  for (int y = 68; y < 80; ++y) {
+    for (int x = 80; x < 120; ++x) painting.at(x, y) = hides;
+  }
+  color::LearnParameters parameters;
+  parameters.widen = false;
+  parameters.min_distinctiveness = 0.0;
+  const color::Sample sample{painting.photograph(1.0, 7), test::around(kBall)};
+  return make_ball_model(color::learn({&sample, 1}, parameters).value().model, kFactors).value();
+}
+
+/// Of the lights, under how many a colour may be the ball's, in the light or in shade.
+int lights_of(const BallModel& ball, const imaging::Rgb& color) {
+  const auto yuv = imaging::yuv_of_rgb(color);
+  const auto code =
+      imaging::color_code(4 * static_cast<int>(yuv.y), 2 * static_cast<int>(yuv.u), 2 * static_cast<int>(yuv.v));
+  return static_cast<int>(std::count_if(ball.of_code.begin(), ball.of_code.end(),
+                                        [code](const auto& of_code) { return of_code[code] != 0; }));
+}
+
+// A dark floor is grey to a camera: with what hides a little of the ball all of it would count as the ball in shade.
+TEST(BallModel, WhatHidesSomeOfTheBallIsNotOneOfItsColours) {
+  constexpr imaging::Rgb kDarkFloor{0.05, 0.05, 0.05};
+  const BallModel ball = model_of_a_partly_hidden_ball(test::kOrange, {0.16, 0.16, 0.16});
+  EXPECT_EQ(lights_of(ball, kDarkFloor), 0);
+  EXPECT_GT(lights_of(ball, {0.5, 0.25, 0.05}), 0) << "the ball itself";
+  EXPECT_GT(lights_of(ball, {0.2, 0.1, 0.02}), 0) << "in shade";
+}
+
+TEST(BallModel, OfAGreyBallGreyIsTheColour) {
+  constexpr imaging::Rgb kGrey{0.6, 0.6, 0.6};
+  const BallModel ball = model_of_a_partly_hidden_ball(kGrey, {0.1, 0.1, 0.6});
+  EXPECT_GT(lights_of(ball, {0.4, 0.4, 0.4}), 0);
+  EXPECT_GT(lights_of(ball, {0.15, 0.15, 0.15}), 0) << "in shade";
 }
 
 TEST(BallCircle, ASquareOfTheSameColourIsNone) {

@@ -37,9 +37,9 @@ double overlap(const Box& a, const Box& b) {
 class Bench {
  public:
   explicit Bench(const IntegratedParameters& parameters = {}) : tracker_(tracker(parameters)) {}
-  BallSighting look(test::Painting painting, const ShadeMaskView& mask) {
+  BallSighting look(test::Painting painting, const ShadeMaskView& mask, const ShadeAtPlace* places = nullptr) {
     UnlimitedBudget budget;
-    return tracker_.track(painting.photograph(1.5, ++seed_), mask, budget);
+    return tracker_.track(painting.photograph(1.5, ++seed_), mask, budget, places);
   }
 
  private:
@@ -98,6 +98,46 @@ TEST(IntegratedTracker, ALighterBrownBallInTheLightIsNotFoundEither) {
   }
   EXPECT_TRUE(bench.look(with_ball(kInShade, kBetween), mask.view()).found) << "where there may be shade";
   EXPECT_TRUE(bench.look(with_ball(kInLight, 0.75), mask.view()).found) << "under the darkest light of the grid";
+}
+
+/// What says of every place the same.
+class AllPlaces final : public ShadeAtPlace {
+ public:
+  explicit AllPlaces(bool shaded) : shaded_(shaded) {}
+  bool may_be_shaded(const Circle& circle, double diameter_m) const override {
+    asked_of_ = circle;
+    EXPECT_EQ(diameter_m, 0.20);
+    return shaded_;
+  }
+  [[nodiscard]] const Circle& asked_of() const { return asked_of_; }
+
+ private:
+  bool shaded_;
+  mutable Circle asked_of_;
+};
+
+// Some point of the ray is shaded, the ball's place is not: the mask alone takes the brown ball for the orange one.
+TEST(IntegratedTracker, WhereThePlaceIsLitABrownBallBehindShadeIsNotFound) {
+  const test::QuarterMask mask;
+  const AllPlaces lit(false);
+  const AllPlaces shaded(true);
+  EXPECT_TRUE(Bench().look(with_ball(kInShade, kShade), mask.view()).found) << "this test could not fail";
+  EXPECT_TRUE(Bench().look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
+  EXPECT_FALSE(Bench().look(with_ball(kInShade, kShade), mask.view(), &lit).found);
+  const auto seen = Bench().look(with_ball(kInLight, 1.0), mask.view(), &lit);
+  ASSERT_TRUE(seen.found) << "a bright one is";
+  EXPECT_FALSE(seen.dark);
+  EXPECT_NEAR(lit.asked_of().x_px, kInLight.x_px, 1.5);
+  EXPECT_NEAR(lit.asked_of().radius_px, kInLight.radius_px, 1.5);
+}
+
+TEST(IntegratedTracker, ABallThatIsFollowedOutOfAShadedPlaceHasToTurnBright) {
+  const test::QuarterMask mask;
+  const AllPlaces lit(false);
+  const AllPlaces shaded(true);
+  Bench bench;
+  ASSERT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
+  EXPECT_FALSE(bench.look(with_ball(kInShade, kShade), mask.view(), &lit).found);
 }
 
 TEST(IntegratedTracker, TheMaskSavesWork) {

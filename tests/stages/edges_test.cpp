@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/runtime/stage.h"
+#include "pipeline/stages/ball_track.h"
 #include "pipeline/stages/color_stages.h"
 #include "pipeline/stages/decide_stage.h"
 #include "pipeline/stages/tasks.h"
@@ -143,7 +144,7 @@ bool track_reads_shade(int frames, Failure failure) {
       color::IntegratedTracker::create(test::ball_model(), {}, test::kBallWidth_px, test::kBallHeight_px, 300.0);
   TrackStage track(std::move(*tracker));
   const test::QuarterMask quarter;
-  Pool<render::ShadeMasks> pool(1, render::ShadeMasks{40, 30, quarter.cells, quarter.cells});
+  Pool<shade::ShadeMasks> pool(1, shade::ShadeMasks{40, 30, quarter.cells, quarter.cells});
   const auto masks = after(frames, failure, ShadowMasks{ShadeStatus::kMasked, pool.take()});
   UnlimitedBudget budget;
   auto room = test::ball_room();
@@ -228,7 +229,7 @@ std::vector<Edge> edges() {
           {"SearchReadsTrack", seconds(0.5), search_reads_track},
           {"TrackReadsDecode", Duration::zero(), track_reads_decode},
           {"TrackReadsSearch", TrackStage::kMaxMatchesAge, track_reads_search},
-          {"TrackReadsShade", TrackStage::kMaxMaskAge, track_reads_shade},
+          {"TrackReadsShade", kMaxMaskAge, track_reads_shade},
           {"LocalizeReadsDecode", Duration::zero(), localize_reads_decode},
           {"ProbesReadsLocalize", Duration::zero(), probes_reads_localize},
           {"ShadeReadsLocalize", Duration::zero(), shade_reads_localize},

@@ -29,7 +29,7 @@ Result<BallTracker> learned_ball(const Image& image, const Box& box, const confi
   return BallTracker(std::move(*tracker), row);
 }
 
-stages::ShadowMasks all_lit(const render::ShadeMasks& masks) {
+stages::ShadowMasks all_lit(const shade::ShadeMasks& masks) {
   const std::vector<std::uint8_t> nothing(masks.possibly_shaded.size(), 0);
   return given_masks({masks.width, masks.height, nothing, nothing});
 }
@@ -40,7 +40,7 @@ namespace {
 Result<stages::ShadowMasks> read_masks(const std::string& file) {
   const cv::Mat cells = cv::imread(file, cv::IMREAD_GRAYSCALE);
   if (cells.empty()) return fail(file + ": no image that can be read");
-  render::ShadeMasks masks{cells.cols, cells.rows, {}, {}};
+  shade::ShadeMasks masks{cells.cols, cells.rows, {}, {}};
   masks.possibly_shaded.assign(cells.begin<std::uint8_t>(), cells.end<std::uint8_t>());
   masks.surface_shaded = masks.possibly_shaded;
   return given_masks(std::move(masks));

@@ -20,7 +20,7 @@ Result<BallTracker> learned_ball(const Image& image, const Box& box, const confi
                                  double focal_px);
 
 /// Masks of the same size that say: nothing is shaded.
-stages::ShadowMasks all_lit(const render::ShadeMasks& masks);
+stages::ShadowMasks all_lit(const shade::ShadeMasks& masks);
 
 /// What `cgsr-lab follow-ball` does, the program that is counted: follows the ball through FOLDER/img, learned from its first image and the
 /// first box of FOLDER/groundtruth.txt, with FOLDER/mask.png over every image or without a mask. The tracker's work is marked as the

@@ -13,7 +13,7 @@ void draw_box(const std::optional<Box>& box, const cv::Scalar& color, cv::Mat& p
 
 }  // namespace
 
-Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, const std::optional<Box>& with,
+Picture picture_of(const BallFilm::Shot& shot, const shade::ShadeMasks& masks, const std::optional<Box>& with,
                    const std::optional<Box>& without, const std::string& title) {
   cv::Mat drawn = shot.image.bgr.clone();
   for (int y = 0; y < drawn.rows; ++y) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 #include "platform/box.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/report.h"
@@ -11,7 +11,7 @@
 namespace cgsr::lab {
 
 /// An image of a ball's film as JPEG: what may lie in shade blue, the answer with the mask green, without it yellow.
-Picture picture_of(const BallFilm::Shot& shot, const render::ShadeMasks& masks, const std::optional<Box>& with,
+Picture picture_of(const BallFilm::Shot& shot, const shade::ShadeMasks& masks, const std::optional<Box>& with,
                    const std::optional<Box>& without, const std::string& title);
 
 }  // namespace cgsr::lab

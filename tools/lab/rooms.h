@@ -22,8 +22,9 @@ inline constexpr std::array<std::string_view, 7> kLocalizationStages{
     "pipeline/stages/odometry_track.h"};
 inline constexpr std::array<std::string_view, 3> kProbesStages{
     "pipeline/stages/probes_stage.cpp", "pipeline/stages/probes_stage.h", "pipeline/stages/requests.h"};
-inline constexpr std::array<std::string_view, 2> kShadeStages{"pipeline/stages/shade_stage.cpp",
-                                                              "pipeline/stages/shade_stage.h"};
+inline constexpr std::array<std::string_view, 4> kShadeStages{
+    "pipeline/stages/ball_track.cpp", "pipeline/stages/ball_track.h", "pipeline/stages/shade_stage.cpp",
+    "pipeline/stages/shade_stage.h"};
 
 template <std::size_t... kCounts>
 constexpr auto all_of(const std::array<std::string_view, kCounts>&... lists) {
@@ -33,10 +34,10 @@ constexpr auto all_of(const std::array<std::string_view, kCounts>&... lists) {
   return all;
 }
 
-inline constexpr auto kColorRooms =
-    all_of(std::array<std::string_view, 5>{"pipeline/color", "pipeline/imaging", "pipeline/runtime", "tools/lab/scenes",
-                                           "tools/lab/ours.cpp"},
-           kColorStages);
+inline constexpr auto kColorRooms = all_of(
+    std::array<std::string_view, 7>{"pipeline/color/learn", "pipeline/color/search", "pipeline/color/track",
+                                    "pipeline/imaging", "pipeline/runtime", "tools/lab/scenes", "tools/lab/ours.cpp"},
+    kColorStages);
 inline constexpr auto kLocalizationRooms =
     all_of(std::array<std::string_view, 9>{"pipeline/localization", "pipeline/render", "pipeline/world",
                                            "pipeline/geometry", "pipeline/imaging", "pipeline/runtime",
@@ -51,18 +52,18 @@ inline constexpr auto kLampRooms =
                                            "tools/lab/probe_room.cpp", "tools/lab/probes_trial.cpp"},
            kLocalizationStages, kProbesStages);
 inline constexpr auto kShadeRooms =
-    all_of(std::array<std::string_view, 8>{"pipeline/render", "pipeline/world", "pipeline/geometry", "pipeline/runtime",
-                                           "hal/sim/render", "hal/sim/calibration", "tools/lab/localization",
-                                           "tools/lab/shade_trial.cpp"},
+    all_of(std::array<std::string_view, 9>{"pipeline/shade", "pipeline/render", "pipeline/world", "pipeline/geometry",
+                                           "pipeline/runtime", "hal/sim/render", "hal/sim/calibration",
+                                           "tools/lab/localization", "tools/lab/shade_trial.cpp"},
            kColorStages, kLocalizationStages, kProbesStages, kShadeStages);
 inline constexpr auto kBallRooms =
-    all_of(std::array<std::string_view, 8>{"pipeline/color", "pipeline/imaging", "pipeline/render", "pipeline/geometry",
-                                           "pipeline/runtime", "hal/sim/render", "tools/lab/ball_film.cpp",
-                                           "tools/lab/shade_trial.cpp"},
+    all_of(std::array<std::string_view, 9>{"pipeline/color", "pipeline/imaging", "pipeline/shade", "pipeline/render",
+                                           "pipeline/geometry", "pipeline/runtime", "hal/sim/render",
+                                           "tools/lab/ball_film.cpp", "tools/lab/shade_trial.cpp"},
            kColorStages, kLocalizationStages, kProbesStages, kShadeStages);
 inline constexpr std::array<std::string_view, 1> kPersonRooms{"pipeline/person"};
 /// All that a robot links which identifies nobody. Not pipeline/mapping: no robot links it.
-inline constexpr std::array<std::string_view, 17> kRobotWithoutPeople{"pipeline/behavior",
+inline constexpr std::array<std::string_view, 18> kRobotWithoutPeople{"pipeline/behavior",
                                                                       "pipeline/calibration",
                                                                       "pipeline/color",
                                                                       "pipeline/geometry",
@@ -72,6 +73,7 @@ inline constexpr std::array<std::string_view, 17> kRobotWithoutPeople{"pipeline/
                                                                       "pipeline/motion",
                                                                       "pipeline/render",
                                                                       "pipeline/runtime",
+                                                                      "pipeline/shade",
                                                                       "pipeline/stages",
                                                                       "pipeline/world",
                                                                       "pipeline/vision_loop.cpp",

@@ -45,8 +45,8 @@ Result<stages::ShadowMasks> masks_of(stages::ShadeStage& stage, const runtime::S
   return fail(fmt::format("no shadow masks: {}", to_string(status)));
 }
 
-stages::ShadowMasks given_masks(render::ShadeMasks masks) {
-  Pool<render::ShadeMasks> pool(1, std::move(masks));
+stages::ShadowMasks given_masks(shade::ShadeMasks masks) {
+  Pool<shade::ShadeMasks> pool(1, std::move(masks));
   return {stages::ShadeStatus::kMasked, pool.take()};
 }
 

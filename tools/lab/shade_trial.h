@@ -38,7 +38,7 @@ Result<stages::ShadowMasks> masks_of(stages::ShadeStage& stage, const runtime::S
                                      const illumination::KnownLamp& lamp);
 
 /// The output of the stage for masks that come from elsewhere.
-stages::ShadowMasks given_masks(render::ShadeMasks masks);
+stages::ShadowMasks given_masks(shade::ShadeMasks masks);
 
 /// The stage track for a ball (5.3), image after image with masks that are given, within the schedule's units.
 class BallTracker {

@@ -26,6 +26,48 @@ std::uint16_t code_at(const SamplePatch& patch, int x, int y) {
   return imaging::color_code(4 * pair[x % 2 * 2], 2 * pair[1], 2 * pair[3]);
 }
 
+struct Chromaticity {
+  double r = 0.0;
+  double g = 0.0;
+
+  [[nodiscard]] double square_distance(const Chromaticity& other) const {
+    return (r - other.r) * (r - other.r) + (g - other.g) * (g - other.g);
+  }
+};
+
+Chromaticity chromaticity_of(int code) {
+  const imaging::Rgb color = imaging::rgb_of_code(static_cast<std::uint16_t>(code));
+  const double r = std::max(0.0, color.r), g = std::max(0.0, color.g), b = std::max(0.0, color.b);
+  const double sum = std::max(1e-6, r + g + b);
+  return {r / sum, g / sum};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Without what is nearer to grey than to the ball's own colour: glints, and what hides some of it in the sample. In the dark such a pixel looks like
+/// anything. All of them where that is most of the ball: it is grey itself.
+Codes of_its_color(const Codes& codes) {
+  constexpr Chromaticity kGrey{1.0 / 3.0, 1.0 / 3.0};
+  if (codes.empty()) return codes;
+  std::vector<double> r, g;
+  for (const int code : codes) {
+    const Chromaticity at = chromaticity_of(code);
+    r.push_back(at.r);
+    g.push_back(at.g);
+  }
+  const Chromaticity own{median(std::move(r)), median(std::move(g))};
+  Codes kept;
+  for (const int code : codes) {
+    const Chromaticity at = chromaticity_of(code);
+    if (at.square_distance(own) <= at.square_distance(kGrey)) kept.push_back(code);
+  }
+  return 2 * kept.size() > codes.size() ? kept : codes;
+}
+
 /// The ball's pixels in a sample, as colour codes.
 Codes codes_of(const ColorModel& model, const SamplePatch& patch) {
   const Box& box = model.object_box;
@@ -105,7 +147,12 @@ std::size_t index_of(const Levels& at) {
   return static_cast<std::size_t>((at.y * imaging::kChromaLevels + at.u) * imaging::kChromaLevels + at.v);
 }
 
-/// Marks a colour and its neighbours in each direction.
+bool is_grey(int u, int v) {
+  constexpr int kNone = imaging::kChromaLevels / 2;
+  return u == kNone && v == kNone;
+}
+
+/// Marks a colour and its neighbours in each direction, but not grey as a neighbour: in the dark most of a room would be one.
 void mark(const imaging::Rgb& color, std::uint8_t kind, std::vector<std::uint8_t>& of_code) {
   const Levels middle = levels_of(color);
   if ((of_code[index_of(middle)] & kind << 4) != 0) return;  // done before
@@ -113,6 +160,7 @@ void mark(const imaging::Rgb& color, std::uint8_t kind, std::vector<std::uint8_t
   for (int y = std::max(0, middle.y - 1); y <= std::min(imaging::kYLevels - 1, middle.y + 1); ++y) {
     for (int u = std::max(0, middle.u - 1); u <= std::min(imaging::kChromaLevels - 1, middle.u + 1); ++u) {
       for (int v = std::max(0, middle.v - 1); v <= std::min(imaging::kChromaLevels - 1, middle.v + 1); ++v) {
+        if (is_grey(u, v) && !is_grey(middle.u, middle.v)) continue;
         of_code[index_of({y, u, v})] = static_cast<std::uint8_t>(of_code[index_of({y, u, v})] | kind);
       }
     }
@@ -165,7 +213,7 @@ Result<BallModel> make_ball_model(const ColorModel& model, std::span<const doubl
     const Codes codes = codes_of(model, patch);
     if (codes.size() < 9) return fail("the learned ball is too small: 4 pixels across are needed");
     samples.push_back(textures_of(codes, patch.light));
-    const Textures some = main_textures(codes, patch.light);
+    const Textures some = main_textures(of_its_color(codes), patch.light);
     main.insert(main.end(), some.begin(), some.end());
   }
   ball.bright = model;

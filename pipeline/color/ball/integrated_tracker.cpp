@@ -77,7 +77,7 @@ struct IntegratedTracker::State {
   /// Which pixels of a box count.
   enum class Where : std::uint8_t { kEverywhere, kShaded, kLit };
 
-  BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget, const SizeRange& sizes);
+  BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget);
   [[nodiscard]] Answer find(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes, BallSighting& seen);
   void restart_search();
   [[nodiscard]] SearchRequest request_for(const SizeRange& sizes) const;
@@ -89,6 +89,7 @@ struct IntegratedTracker::State {
   void remember(const Answer& answer);
   void describe(const Answer& answer, const BallPixels& pixels, BallSighting& seen) const;
   [[nodiscard]] Likeness likeness_of(const BallPixels& pixels, const Circle& of);
+  [[nodiscard]] Likeness likeness_in_the_light(const BallPixels& pixels, const Circle& of);
   [[nodiscard]] bool looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of);
   [[nodiscard]] BoxDivergence::Answer bright_of(const BallPixels& pixels, const Box& box, Where where);
   [[nodiscard]] BoxDivergence::Answer dark_of(const BallPixels& pixels, const Box& box, Where where);
@@ -108,6 +109,7 @@ struct IntegratedTracker::State {
 
   // Of the image under way.
   int factor = 2;  // of the reduced image
+  const ShadeAtPlace* places = nullptr;
 
   // From image to image.
   bool located = false;
@@ -213,11 +215,24 @@ void IntegratedTracker::State::remember(const Answer& answer) {
 
 /// Which histogram fits best what is inside a circle.
 IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const BallPixels& pixels, const Circle& of) {
+  if (places != nullptr && !places->may_be_shaded(of, parameters.ball.diameter_m)) {
+    return likeness_in_the_light(pixels, of);
+  }
   if (looks_shaded_in_the_light(pixels, of)) return {};
   const Box core = core_of(of);
   const auto bright = bright_of(pixels, core, Where::kEverywhere);
   const auto dark = dark_of(pixels, core, Where::kShaded);
   if (dark.divergence < bright.divergence) return {dark.divergence, dark.light, true};
+  return {bright.divergence, bright.light, false};
+}
+
+/// Of what stands in the light whatever its ray passes through: nearer to a dark histogram than to every bright one it is something darker than the
+/// ball.
+IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_in_the_light(const BallPixels& pixels,
+                                                                                   const Circle& of) {
+  const Box core = core_of(of);
+  const auto bright = bright_of(pixels, core, Where::kEverywhere);
+  if (dark_of(pixels, core, Where::kEverywhere).divergence < bright.divergence) return {};
   return {bright.divergence, bright.light, false};
 }
 
@@ -257,12 +272,12 @@ BoxDivergence::Answer IntegratedTracker::State::divergence_of(const BallPixels& 
   return divergence.of(labels, box);
 }
 
-BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
-                                            const SizeRange& sizes) {
+BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget) {
   BallSighting seen;
   seen.mask_used = can_be_used(mask, image);
   if (!can_be_searched(image, max_width_px, max_height_px)) return seen;
   const BallPixels pixels{image, colors_under(light), seen.mask_used ? mask : ShadeMaskView{}};
+  const SizeRange& sizes = usual_sizes;
   factor = imaging::reduction_for(image.width_px, image.height_px, sizes.min_px);
   Answer answer;
   if (located) {
@@ -331,8 +346,9 @@ IntegratedTracker& IntegratedTracker::operator=(IntegratedTracker&&) noexcept = 
 IntegratedTracker::~IntegratedTracker() = default;
 
 BallSighting IntegratedTracker::track(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
-                                      std::optional<SizeRange> size) {
-  return state_->look(image, mask, budget, size.value_or(state_->usual_sizes));
+                                      const ShadeAtPlace* places) {
+  state_->places = places;
+  return state_->look(image, mask, budget);
 }
 
 void IntegratedTracker::forget() {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "pipeline/color/ball/ball_circle.h"
+#include "pipeline/color/ball/shade_at_place.h"
 #include "pipeline/color/ball/shade_mask.h"
 #include "pipeline/color/learn/color_model.h"
 #include "pipeline/color/search/search_types.h"
@@ -122,9 +123,9 @@ class IntegratedTracker {
   /// Looks for the ball in the next image.
   /// \param image  YUYV, as the camera sent it. \param mask  over this image; empty: none is known, and dark histograms are searched
   ///        everywhere (BallSighting::mask_used). \param budget  asked once per unit of the searches and per closer look.
-  /// \param size  what else is known of its size in this image; nothing: what create() was told.
+  /// \param places  what is known of single places beside the mask, of the same image; null: nothing.
   BallSighting track(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
-                     std::optional<SizeRange> size = std::nullopt);
+                     const ShadeAtPlace* places = nullptr);
 
   /// Forgets where the ball was.
   void forget();

@@ -101,6 +101,7 @@ class FaceTracks {
   std::vector<FaceTrack> tracks_;
   std::vector<Box> found_;
   int looks_without_search_ = 0;
+  std::size_t looks_at_expected_ = 0;  ///< where a face was expected and none known.
   std::uint32_t next_number_ = 1;
 };
 

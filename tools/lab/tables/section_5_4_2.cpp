@@ -91,7 +91,7 @@ class Room {
     if (!exact) return tl::unexpected(exact.error());
     auto told = survey(**place, map_errors(), static_cast<std::uint32_t>(seed));
     if (!told) return tl::unexpected(told.error());
-    const render::ShadeParameters& masks = robot.shade.masks;
+    const shade::ShadeParameters& masks = robot.shade.masks;
     auto renderer = sim::Renderer::make((*place)->scene(), (*place)->camera().scaled_to(masks.width, masks.height), {});
     if (!renderer) return tl::unexpected(renderer.error());
     return std::unique_ptr<Room>(
@@ -161,7 +161,7 @@ class Room {
     return masks_of(stage, row_of<stages::ShadeStage>(robot_), X_WC, kStated.pose(), kStated.lamp(p_WL));
   }
 
-  void add(const render::ShadeMasks& exact, Tally& tally) const {
+  void add(const shade::ShadeMasks& exact, Tally& tally) const {
     ++tally.views;
     Overlap one;
     one.add(exact.surface_shaded, truth_.surface_shaded);

@@ -70,7 +70,7 @@ class Judge {
     const stages::FrameResult& frame = report.frame;
     const stages::LampReport& lamp = frame.lamp.value;
     const color::TrackedObject& object = frame.objects.value.first().object;
-    const render::ShadeMasks* const masks = report.picture->masks.get();
+    const shade::ShadeMasks* const masks = report.picture->masks.get();
     ++images_;
     const bool seen = lamp.has_board && reason_of(lamp).empty();
     if (seen && lamp.known) keep("(a) the probes throw shadows, the lamp is found", image, report, 0);

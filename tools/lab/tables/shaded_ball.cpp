@@ -17,7 +17,7 @@
 #include <fmt/format.h>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 #include "pipeline/stages/shade_stage.h"
 #include "tools/lab/ball_film.h"
 #include "tools/lab/ball_follower.h"
@@ -65,7 +65,7 @@ Result<stages::ShadowMasks> masks_for(const BallFilm& film, const config::Robot&
 
 /// Masks of the true map, lamp and pose, widened by a cell: of a robot that knows no errors.
 stages::ShadowMasks widened_masks(const BallFilm& film, const config::Robot& robot) {
-  render::ShadowVolumes volumes(film.map(), robot.shade.masks);
+  shade::ShadowVolumes volumes(film.map(), robot.shade.masks);
   return given_masks(volumes.look(film.X_WC(), film.camera(), film.p_WL(), kWiden_cells));
 }
 
@@ -103,7 +103,7 @@ Result<std::vector<Entry>> entries_of(const BallFilm& film, const BallFilm::Shot
 }
 
 /// A folder with some images of the film, the mask and the first box, for what is counted.
-Result<void> save(BallFilm& film, const render::ShadeMasks& masks, const std::filesystem::path& folder) {
+Result<void> save(BallFilm& film, const shade::ShadeMasks& masks, const std::filesystem::path& folder) {
   Film some;
   some.name = "ball";
   std::vector<Image> images;
@@ -126,7 +126,7 @@ Result<Take> run_take(const Setting& setting, const config::Robot& robot, std::u
   if (!film) return tl::unexpected(film.error());
   const auto shade = masks_for(**film, robot);
   if (!shade) return tl::unexpected(shade.error());
-  const render::ShadeMasks& masks = *shade->masks;
+  const shade::ShadeMasks& masks = *shade->masks;
   BallFilm::Shot shot = (*film)->shoot(0);
   if (!shot.orange) return fail("the ball is not in the first image");
   auto entries = entries_of(**film, shot, setting, robot, *shade);

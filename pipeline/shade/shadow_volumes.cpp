@@ -1,18 +1,22 @@
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-namespace cgsr::render {
+#include "pipeline/shade/ball_in_shade.h"
+
+namespace cgsr::shade {
 namespace {
 
 constexpr float kLikeCells = 0.6F;     // parts of a side whose uncertainty differs by less are widened alike
 constexpr double kWithinACell = 0.4;   // added to what a border may be off by: a cell is marked by its middle alone
 constexpr float kLeastDepth_m = 0.2F;  // what is nearer is widened as what stands here
+constexpr double kCircle_px = 0.25;    // standard deviation of a ball's radius in the image,
+constexpr double kBallSize = 0.01;     // and of what is known of its own, as a share of it
 
-RasterParameters raster_of(const ShadeParameters& parameters) {
-  RasterParameters raster;
+render::RasterParameters raster_of(const ShadeParameters& parameters) {
+  render::RasterParameters raster;
   raster.width = parameters.width * parameters.finer;
   raster.height = parameters.height * parameters.finer;
   raster.near_m = parameters.near_m;
@@ -99,6 +103,31 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
   return masks_;
 }
 
+bool ShadowVolumes::may_be_shaded(const BallInImage& ball) const {
+  if (!valid_ || !(ball.radius_px > 0.0)) return true;
+  const Eigen::Vector2d ideal = camera_.ideal_of(ball.middle_px);
+  // Beside the axis a ball shows an ellipse, longer by this factor away from the axis: the circle is between its axes.
+  const double longer = std::sqrt(1.0 + ideal.squaredNorm());
+  const double focal_px = 0.5 * (camera_.fx_px + camera_.fy_px);
+  const double distance_m = longer * 0.5 * (1.0 + longer) * focal_px * ball.radius_m / ball.radius_px;
+  const ShadeErrors errors = uncertain_ ? errors_ : ShadeErrors{};
+  const auto variance = [](const Eigen::Matrix3d& covariance) { return covariance.trace() / 3.0; };
+  // The lamp moves the border of a shade by no more than its own way where what throws it stands nearer to the ball than to the lamp.
+  const double across_m = std::sqrt(variance(errors.lamp) + variance(errors.pose.topLeftCorner<3, 3>()) +
+                                    distance_m * distance_m * variance(errors.pose.bottomRightCorner<3, 3>()) +
+                                    parameters_.map_sigma_m * parameters_.map_sigma_m);
+  UncertainBall uncertain;
+  uncertain.along =
+      (static_cast<float>(ideal.x()) * axes_.right + static_cast<float>(ideal.y()) * axes_.down + axes_.ahead)
+          .normalized();
+  uncertain.p_WB = axes_.p_WC + static_cast<float>(distance_m) * uncertain.along;
+  uncertain.radius_m = static_cast<float>(ball.radius_m);
+  uncertain.along_m =
+      static_cast<float>(parameters_.sigmas * distance_m * std::hypot(kBallSize, kCircle_px / ball.radius_px));
+  uncertain.across_m = static_cast<float>(parameters_.sigmas * across_m);
+  return may_lie_in_shade(uncertain, lamps_[now_].lamp(), p_WL_.cast<float>());
+}
+
 bool ShadowVolumes::prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget) {
   if (p_WL == p_WL_) return true;
   if (p_WL != p_WL_next_) {
@@ -117,7 +146,7 @@ bool ShadowVolumes::prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget) {
 
 void ShadowVolumes::take_camera(const geometry::Camera& camera) {
   camera_ = camera;
-  const View& view = views_.of(camera);
+  const render::View& view = views_.of(camera);
   const double px_x = static_cast<double>(camera.width_px) / parameters_.width;
   const double px_y = static_cast<double>(camera.height_px) / parameters_.height;
   std::size_t i = 0;
@@ -152,7 +181,7 @@ void ShadowVolumes::draw_side(const Silhouettes::Side& side, const Eigen::Vector
   const Eigen::Vector3f n = to_a.cross(to_b);
   const float size = n.norm();
   if (size < 1e-9F) return;
-  DepthPlane plane;
+  render::DepthPlane plane;
   if (!surfaces_.plane_in_view(n / size, n.dot(p_WL) / size, plane)) return;
   const Strip strip{side.a, side.b, to_a, to_b};
   if (!surfaces_.may_be_in_view(strip.between(1.0F, side.reach))) return;
@@ -171,7 +200,8 @@ ShadowVolumes::PartEnd ShadowVolumes::end_of(const Strip& strip, float times) co
 }
 
 /// A side between two multiples of the way to the edge, in as many parts as its uncertainty differs.
-void ShadowVolumes::draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to) {
+void ShadowVolumes::draw_part(const Strip& strip, const render::DepthPlane& plane, const PartEnd& from,
+                              const PartEnd& to) {
   std::uint8_t bits = 1;
   if (uncertain_) {
     const float least = std::min(from.least, to.least);
@@ -236,7 +266,7 @@ void ShadowVolumes::shade_surfaces() {
 
 void ShadowVolumes::follow(const Ray& ray, std::uint32_t triangle, End& end) const {
   end = {triangle, LampView::kSeveral, 0};
-  if (triangle == DepthBuffer::kNothing) return;
+  if (triangle == render::DepthBuffer::kNothing) return;
   const std::uint32_t own = surfaces_.surface_of(triangle);
   // A sheet between lamp and camera shades itself: what is seen is its other side.
   if (lamps_[now_].in_front_of(own) != surfaces_.from_front(own)) {
@@ -262,7 +292,7 @@ void ShadowVolumes::write_masks() {
   const Ray* const rays = rays_.data();
   const std::size_t count = rays_.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t some = ends[i].triangle == DepthBuffer::kNothing ? 0 : 255;
+    const std::uint8_t some = ends[i].triangle == render::DepthBuffer::kNothing ? 0 : 255;
     surface[i] = ends[i].shaded;
     const auto marks = static_cast<std::uint8_t>(((ends[i].shaded & 1U) | in_shade | sides[rays[i].nearest]) & some);
     possibly[i] = uncertain_ ? marks : static_cast<std::uint8_t>(marks != 0 ? 255 : 0);
@@ -320,23 +350,24 @@ std::uint32_t ShadowVolumes::seen_around(const Ray& ray) const {
 std::uint32_t ShadowVolumes::seen_at(const Ray& ray) const {
   const auto around = buffer_.names(ray.around);
   if (((around[0] ^ around[1]) | (around[0] ^ around[2]) | (around[0] ^ around[3])) == 0) return around[0];
-  std::uint32_t nearest = DepthBuffer::kNothing;
+  std::uint32_t nearest = render::DepthBuffer::kNothing;
   float most = 0.0F;
   for (const std::uint32_t triangle : around) {
-    if (triangle == DepthBuffer::kNothing || triangle == nearest || !surfaces_.covers(triangle, ray.u, ray.v)) continue;
+    if (triangle == render::DepthBuffer::kNothing || triangle == nearest || !surfaces_.covers(triangle, ray.u, ray.v))
+      continue;
     const float w = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v);
     if (w > most) {
       most = w;
       nearest = triangle;
     }
   }
-  if (nearest != DepthBuffer::kNothing) return nearest;
+  if (nearest != render::DepthBuffer::kNothing) return nearest;
   const auto nearest_cell = static_cast<int>(ray.nearest);
   const std::uint32_t triangle = buffer_.name(nearest_cell % view_->width, nearest_cell / view_->width);
-  if (triangle == DepthBuffer::kNothing) return triangle;
+  if (triangle == render::DepthBuffer::kNothing) return triangle;
   // A cell's own triangle that ends short of the ray: its plane still has to lie before the camera there.
   const bool before = surfaces_.plane_of(surfaces_.surface_of(triangle)).at(ray.u, ray.v) > 0.0F;
-  return before ? triangle : DepthBuffer::kNothing;
+  return before ? triangle : render::DepthBuffer::kNothing;
 }
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "hal/sim/render/truth_images.h"
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 #include "tests/render/free_pose.h"
 #include "tests/render/shipped_map.h"
 #include "tools/sim/world_file.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 namespace {
 
 struct Counts {
@@ -37,7 +37,7 @@ struct Counts {
 void agree_in(const std::string& name, int poses) {
   const auto world = sim::load_world(std::string(CGSR_SOURCE_DIR) + "/config/worlds/" + name + ".toml");
   ASSERT_TRUE(world) << world.error().message;
-  const world::Map map = shipped_map(name);
+  const world::Map map = render::shipped_map(name);
   const sim::CameraModel model = sim::CameraModel().scaled_to(160, 120);
   auto renderer = sim::Renderer::make(world->scene, model, {});
   ASSERT_TRUE(renderer) << renderer.error().message;
@@ -55,7 +55,7 @@ void agree_in(const std::string& name, int poses) {
   Counts surface;
   Counts possibly;
   for (int trial = 0; trial < poses; ++trial) {
-    const geometry::Pose X_WC = free_pose(map, random);
+    const geometry::Pose X_WC = render::free_pose(map, random);
     const auto truth = sim::shadow_masks(**renderer, state, X_WC, 0);
     const ShadeMasks& ours = volumes.look(X_WC, camera, state.lamps[0].p_WL.cast<double>());
     surface.add(ours.surface_shaded, truth.surface_shaded);
@@ -77,4 +77,4 @@ TEST(ShadeTruth, OcclusionIsShadedAsTheRayTracerSays) {
 }
 
 }  // namespace
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace cgsr::render {
+namespace cgsr::shade {
 
 /// Grows masks of bytes, a bit a cell inside: a step costs a few instructions for 64 cells. This is dilation (Serra 1982), for the masks of
 /// shaded regions (5.2). Masks lie row by row.
@@ -36,4 +36,4 @@ class MaskGrowth {
   std::vector<std::uint64_t> sideways_;  ///< grown to the left and right alone.
 };
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -1,4 +1,4 @@
-#include "pipeline/render/shadow_volumes.h"
+#include "pipeline/shade/shadow_volumes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,16 @@
 #include "tests/support/allocation_guard.h"
 #include "tests/support/counted_budget.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Camera;
 using geometry::Pose;
+using render::add_box;
+using render::add_rectangle;
+using render::looking_from;
 using world::Map;
 
 /// A floor of 12 x 12 m and a table top of 1.2 x 0.8 m at 0.75 m over its middle.
@@ -327,4 +330,4 @@ TEST(ShadowVolumesAlloc, LookingTakesNoMemory) {
 }
 
 }  // namespace
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -6,11 +6,11 @@
 
 #include <Eigen/Geometry>
 
-#include "pipeline/render/lamp_view.h"
-#include "pipeline/render/shade_parameters.h"
+#include "pipeline/shade/lamp_view.h"
+#include "pipeline/shade/shade_parameters.h"
 #include "pipeline/world/map.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 
 /// What of the shadow volumes (5.2) depends on map and lamp alone: which surfaces are turned to the lamp, and the stretches of the silhouettes that
 /// it sees. A new place costs many times a view of it, so it can be computed in steps.
@@ -55,4 +55,4 @@ class Silhouettes {
   bool seen_ = false;  ///< the lamp's view is complete.
 };
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

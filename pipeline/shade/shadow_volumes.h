@@ -5,14 +5,14 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/render/mask_growth.h"
-#include "pipeline/render/shade_parameters.h"
-#include "pipeline/render/silhouettes.h"
 #include "pipeline/render/surface_raster.h"
 #include "pipeline/render/view.h"
+#include "pipeline/shade/mask_growth.h"
+#include "pipeline/shade/shade_parameters.h"
+#include "pipeline/shade/silhouettes.h"
 #include "platform/work_budget.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 
 /// The two masks of shaded regions for one lamp, one byte a cell, 0 or 255, over the camera's image (lens included). A point counts as shaded
 /// when the map hides the lamp's centre from it.
@@ -27,6 +27,13 @@ struct ShadeMasks {
 struct ShadeErrors {
   Eigen::Matrix3d lamp = Eigen::Matrix3d::Zero();        ///< covariance of p_WL, m^2.
   geometry::Matrix6d pose = geometry::Matrix6d::Zero();  ///< of the step from X_WC (geometry::moved), m and rad.
+};
+
+/// A ball as an image shows it.
+struct BallInImage {
+  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();  ///< the pixel (x, y) has its middle at (x, y).
+  double radius_px = 0.0;                               ///< of the circle that its outline is taken for.
+  double radius_m = 0.0;                                ///< its own.
 };
 
 /// Shaded regions of the map (5.2) by shadow volumes, clipped by the map's depth.
@@ -53,6 +60,11 @@ class ShadowVolumes {
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          const ShadeErrors& errors);
 
+  /// Whether some of a ball may lie in shade where its size says that it is: one place, where a mask speaks of a whole ray, of which some point may be
+  /// shaded far before the ball. With pose, camera and errors of the last look(), and the lamp that is prepared. Ours; the dissertation has
+  /// the masks alone. \return true before the first look() as well.
+  [[nodiscard]] bool may_be_shaded(const BallInImage& ball) const;
+
   /// Computes what depends on the lamp's place, a unit (Silhouettes::work_unit) for each grant, and goes on from there when called again with the
   /// same place. \return whether it is complete: look() at this place is then as cheap as at the last one. What is not complete leaves the place
   /// before prepared.
@@ -77,7 +89,7 @@ class ShadowVolumes {
   };
   /// Where a ray ends.
   struct End {
-    std::uint32_t triangle = DepthBuffer::kNothing;
+    std::uint32_t triangle = render::DepthBuffer::kNothing;
     std::uint32_t seen = LampView::kSeveral;  ///< by the lamp, around it.
     std::uint8_t shaded = 0;
 
@@ -116,7 +128,7 @@ class ShadowVolumes {
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const Silhouettes::Side& side, const Eigen::Vector3f& p_WL);
   [[nodiscard]] PartEnd end_of(const Strip& strip, float times) const;
-  void draw_part(const Strip& strip, const DepthPlane& plane, const PartEnd& from, const PartEnd& to);
+  void draw_part(const Strip& strip, const render::DepthPlane& plane, const PartEnd& from, const PartEnd& to);
   [[nodiscard]] float moved_cells(const Eigen::Vector3f& p_W, float times) const;
   void write_masks();
   void mark_outlines();
@@ -126,10 +138,10 @@ class ShadowVolumes {
   [[nodiscard]] std::uint32_t seen_at(const Ray& ray) const;
 
   ShadeParameters parameters_;
-  ViewKeeper views_;
-  const View* view_;
-  SurfaceRaster surfaces_;
-  DepthBuffer buffer_;
+  render::ViewKeeper views_;
+  const render::View* view_;
+  render::SurfaceRaster surfaces_;
+  render::DepthBuffer buffer_;
   std::array<Silhouettes, 2> lamps_;  ///< what is looked at, and what is being prepared.
   std::size_t now_ = 0;               ///< the first of them.
   std::vector<Ray> rays_;
@@ -152,4 +164,4 @@ class ShadowVolumes {
   Eigen::Vector3f from_lamp_ = Eigen::Vector3f::Zero();  ///< to the camera.
 };
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -1,4 +1,4 @@
-#include "pipeline/render/mask_growth.h"
+#include "pipeline/shade/mask_growth.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include <emmintrin.h>
 
-namespace cgsr::render {
+namespace cgsr::shade {
 namespace {
 
 // Eight cells, a bit each, as eight bytes that are 0 or 255.
@@ -97,4 +97,4 @@ void MaskGrowth::write(std::uint8_t* mask) const {
   }
 }
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

@@ -2,7 +2,7 @@
 
 #include "platform/parameters.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 
 /// How shaded regions are found (5.2).
 struct ShadeParameters {
@@ -46,4 +46,4 @@ struct ShadeParameters {
   }
 };
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

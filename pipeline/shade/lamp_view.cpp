@@ -1,11 +1,11 @@
-#include "pipeline/render/lamp_view.h"
+#include "pipeline/shade/lamp_view.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>
 
-namespace cgsr::render {
+namespace cgsr::shade {
 namespace {
 
 constexpr std::size_t kFaces = 6;        // +x, -x, +y, -y, +z, -z
@@ -346,4 +346,4 @@ float LampView::reach(const Eigen::Vector3f& p_W) const {
   return nearest > 0.0F ? 1.0F / nearest : std::numeric_limits<float>::infinity();
 }
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

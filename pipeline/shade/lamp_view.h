@@ -5,10 +5,10 @@
 #include <limits>
 #include <vector>
 
-#include "pipeline/render/shade_parameters.h"
+#include "pipeline/shade/shade_parameters.h"
 #include "pipeline/world/map.h"
 
-namespace cgsr::render {
+namespace cgsr::shade {
 
 /// What a lamp's centre sees: six square faces around it, whose cells each name every triangle that may throw a shadow there, however thin. Whether
 /// one stands between the lamp and a point is decided by the triangle itself, so that the size of the cells is a matter of cost alone.
@@ -99,4 +99,4 @@ class LampView {
   bool full_ = false;
 };
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade

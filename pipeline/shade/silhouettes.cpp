@@ -1,9 +1,9 @@
-#include "pipeline/render/silhouettes.h"
+#include "pipeline/shade/silhouettes.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace cgsr::render {
+namespace cgsr::shade {
 namespace {
 
 constexpr std::size_t kWorkPerUnit = 10'000;  // cells of the lamp's view that are visited, about ten instructions each
@@ -109,4 +109,4 @@ float Silhouettes::leaves_map_after(const Eigen::Vector3f& p_W) const {
   return std::max(1.2F * after, 1.0F);
 }
 
-}  // namespace cgsr::render
+}  // namespace cgsr::shade
