@@ -29,8 +29,8 @@ constexpr std::string_view kNotSeparated =
     "what comes back half as large, or from another side, is not recognised; of the rest some is not looked at, and "
     "some shows no more evidence than other things do";
 constexpr std::string_view kShadedRays =
-    "some point of the rays to the brown ball may be shaded, as of nearly all rays where the robot stands in shade "
-    "itself, and in shade an orange one would look so";
+    "where shade is nearer to the ball than its distance is known, it may lie in it, and in shade an orange one would "
+    "look so";
 constexpr std::string_view kFaces = "known faces near the threshold are called strangers";
 
 // Units are those of the rows: cm, degrees, px, Minstr (million instructions per image), s, shares.
