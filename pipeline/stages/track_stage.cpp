@@ -3,6 +3,7 @@
 #include "pipeline/stages/ball_track.h"
 
 namespace cgsr::stages {
+
 TrackedObjects TrackStage::update(WorkBudget& budget, const ImageView& image, const runtime::Aged<View>& view,
                                   const runtime::Aged<color::SearchResult>& matches,
                                   const runtime::Aged<ShadowMasks>& shade, const Requests& requests) {

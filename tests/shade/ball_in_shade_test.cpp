@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/shade/shadow_volumes.h"
-#include "tests/render/box_map.h"
+#include "tests/shade/table_map.h"
 #include "tests/support/allocation_guard.h"
 
 namespace cgsr::shade {
@@ -15,21 +15,11 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Camera;
 using geometry::Pose;
-using render::add_box;
-using render::add_rectangle;
 using render::looking_from;
 using world::Map;
 
 constexpr double kRadius_m = 0.1;
-const Vector3d kLamp(0.0, 0.0, 2.5);
-
-/// A floor and a table top of 1.2 x 0.8 m at 0.75 m over its middle; the lamp is above it, so that its shade on the floor is 1.71 x 1.14 m.
-Map table_over_floor() {
-  Map map;
-  add_rectangle(map, {-6.0F, -6.0F, 0.0F}, {12.0F, 0.0F, 0.0F}, {0.0F, 12.0F, 0.0F});
-  add_box(map, {-0.6F, -0.4F, 0.72F}, {0.6F, 0.4F, 0.75F});
-  return map;
-}
+const Vector3d kLamp(0.0, 0.0, 2.5);  // above the table, whose shade on the floor is 1.71 x 1.14 m
 
 /// What a ball there shows: the mean of the axes of its ellipse.
 BallInImage shown(const Vector3d& p_WB, const Pose& X_WC, const Camera& camera) {
@@ -120,9 +110,7 @@ TEST_F(BallInShade, RaysToPointsOnBallsAgree) {
 
 // What stands as close to the ball as that throws shade on it where it is, if not on every place where it may be.
 TEST(BallInShadeUnderAShelf, ALowShelfThrowsShadeToo) {
-  Map map;
-  add_rectangle(map, {-6.0F, -6.0F, 0.0F}, {12.0F, 0.0F, 0.0F}, {0.0F, 12.0F, 0.0F});
-  add_box(map, {-0.6F, -0.4F, 0.24F}, {0.6F, 0.4F, 0.25F});
+  const Map map = table_over_floor(0.25F, 0.01F);
   ShadowVolumes volumes(map, {});
   for (const double distance_m : {1.2, 1.9, 2.5, 4.0}) {
     const Pose X_WC = looking_from({-distance_m, 0.0, 0.2}, {0.0, 0.0, 0.1});

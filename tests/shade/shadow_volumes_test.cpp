@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/render/box_map.h"
+#include "tests/shade/table_map.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/counted_budget.h"
 
@@ -21,14 +22,6 @@ using render::add_box;
 using render::add_rectangle;
 using render::looking_from;
 using world::Map;
-
-/// A floor of 12 x 12 m and a table top of 1.2 x 0.8 m at 0.75 m over its middle.
-Map table_over_floor() {
-  Map map;
-  add_rectangle(map, {-6.0F, -6.0F, 0.0F}, {12.0F, 0.0F, 0.0F}, {0.0F, 12.0F, 0.0F});
-  add_box(map, {-0.6F, -0.4F, 0.72F}, {0.6F, 0.4F, 0.75F});
-  return map;
-}
 
 std::size_t count(const std::vector<std::uint8_t>& mask) {
   return mask.size() - static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 0));

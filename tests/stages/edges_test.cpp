@@ -151,6 +151,24 @@ bool track_reads_shade(int frames, Failure failure) {
   return track.update(budget, room.photograph(1.5, 1), {}, {}, masks, {}).first().ball.mask_used;
 }
 
+/// A brown ball whose ray may be shaded, in a map where nothing throws shade on its place.
+bool track_reads_places(int frames, Failure failure) {
+  constexpr double kShade = 0.45;
+  auto tracker =
+      color::IntegratedTracker::create(test::ball_model(), {}, test::kBallWidth_px, test::kBallHeight_px, 300.0);
+  TrackStage track(std::move(*tracker));
+  static const world::Map kNothing;
+  const auto volumes = std::make_shared<shade::ShadowVolumes>(kNothing, shade::ShadeParameters());
+  volumes->look(geometry::Pose::Identity(), camera_of(test::kBallWidth_px, test::kBallHeight_px), {0.0, -2.0, 0.0});
+  const test::QuarterMask quarter;
+  Pool<shade::ShadeMasks> pool(1, shade::ShadeMasks{40, 30, quarter.cells, quarter.cells});
+  const auto masks = after(frames, failure, ShadowMasks{ShadeStatus::kMasked, pool.take(), {}, volumes});
+  UnlimitedBudget budget;
+  auto room = test::ball_room(kShade);
+  test::paint_ball(room, {240.0, 185.0, 15.0}, kShade);
+  return !track.update(budget, room.photograph(1.5, 1), {}, {}, masks, {}).first().ball.found;
+}
+
 bool localize_reads_decode(int frames, Failure failure) {
   LocalizationSetup setup;
   setup.map = home();
@@ -230,6 +248,7 @@ std::vector<Edge> edges() {
           {"TrackReadsDecode", Duration::zero(), track_reads_decode},
           {"TrackReadsSearch", TrackStage::kMaxMatchesAge, track_reads_search},
           {"TrackReadsShade", kMaxMaskAge, track_reads_shade},
+          {"TrackReadsPlaces", kMaxPlacesAge, track_reads_places},
           {"LocalizeReadsDecode", Duration::zero(), localize_reads_decode},
           {"ProbesReadsLocalize", Duration::zero(), probes_reads_localize},
           {"ShadeReadsLocalize", Duration::zero(), shade_reads_localize},

@@ -348,7 +348,9 @@ IntegratedTracker::~IntegratedTracker() = default;
 BallSighting IntegratedTracker::track(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget,
                                       const ShadeAtPlace* places) {
   state_->places = places;
-  return state_->look(image, mask, budget);
+  const BallSighting seen = state_->look(image, mask, budget);
+  state_->places = nullptr;  // the caller's, for this image
+  return seen;
 }
 
 void IntegratedTracker::forget() {

@@ -42,8 +42,9 @@ constexpr double kBrown_s = 8.0;
 constexpr double kTheirsWith = 0.742;
 constexpr double kTheirsWithout = 0.437;
 
-enum Contender : std::size_t { kWithMask, kWithout, kBrightOnly, kContenders };
-constexpr std::array<std::string_view, kContenders> kNames{"with the mask", "without a mask", "bright colours only"};
+enum Contender : std::size_t { kWithMask, kMaskAlone, kWithout, kBrightOnly, kContenders };
+constexpr std::array<std::string_view, kContenders> kNames{"with the mask", "with the mask alone", "without a mask",
+                                                           "bright colours only"};
 
 enum Part : std::size_t { kAbove, kShaded, kFloorLit, kElsewhere, kOfBrown, kParts };
 constexpr std::array<std::string_view, kParts> kPartNames{"off the floor", "on the floor, in shadow",
@@ -136,7 +137,10 @@ class HomeTake {
     if (!masks) return tl::unexpected(masks.error());
     BallFilm::Shot shot = (*film)->shoot(0);
     if (!shot.orange) return std::nullopt;
-    const std::array<stages::ShadowMasks, kContenders> given{*masks, stages::ShadowMasks{}, all_lit(*masks->masks)};
+    stages::ShadowMasks alone = *masks;
+    alone.volumes = {};
+    const std::array<stages::ShadowMasks, kContenders> given{*masks, alone, stages::ShadowMasks{},
+                                                             all_lit(*masks->masks)};
     std::vector<BallTracker> trackers;
     for (std::size_t i = 0; i < kContenders; ++i) {
       auto tracker =
@@ -288,7 +292,8 @@ Result<Report> homes_5_4_3(const Setting& setting) {
     takes.push_back(std::move(**take));
   }
   report.title = fmt::format("a ball in light and shade in {} drawn homes", setting.trials);
-  for (const Contender i : {kWithMask, kWithout, kBrightOnly}) add_contender(i, takes, setting.seed, report);
+  for (const Contender i : {kWithMask, kMaskAlone, kWithout, kBrightOnly})
+    add_contender(i, takes, setting.seed, report);
   add_gain(takes, setting.seed, report);
   report.notes = {
       "A home of its own for each film (`cgsr sim home`), by day or night, with one of its lamps on: one that throws "
@@ -298,7 +303,9 @@ Result<Report> homes_5_4_3(const Setting& setting) {
       "Means over homes of each home's share of images; intervals by home. Overlap is |found and true| / |true|, "
       "nothing found counting as 0. Found: something that touches the ball. False: images in which something that does "
       "not touch the ball was taken for it, of all.",
-      "Without a mask dark histograms are searched everywhere; bright colours only: nowhere.",
+      "With the mask: dark histograms count where the ball's ray may be shaded and, at the distance that its size "
+      "says, its place. With the mask alone: "
+      "where its ray may be. Without a mask they are searched everywhere; bright colours only: nowhere.",
       fmt::format("Drawn homes without such a table, lamp and view: {}.", without_table)};
   return report;
 }
