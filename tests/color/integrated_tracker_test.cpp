@@ -279,7 +279,8 @@ TEST(IntegratedTracker, WithFewUnitsAnImageItFindsABallThatMoves) {
   EXPECT_LT(first, 12);
 }
 
-TEST(IntegratedTracker, ABallThatIsFollowedSurelyIsNotSearchedFor) {
+/// In how many of these images with one ball that is followed the tracker searches.
+int searches(double factor, int images) {
   class Counter final : public WorkBudget {
    public:
     bool grant() override { return ++asked > 0; }
@@ -287,12 +288,72 @@ TEST(IntegratedTracker, ABallThatIsFollowedSurelyIsNotSearchedFor) {
   };
   const test::QuarterMask mask;
   IntegratedTracker one = tracker();
-  for (int i = 0; i < 5; ++i) {
-    auto painting = with_ball({kInLight.x_px + 3.0 * i, kInLight.y_px, kInLight.radius_px}, 1.0);
+  int count = 0;
+  for (int i = 0; i < images; ++i) {
+    auto painting = with_ball({kInLight.x_px + 3.0 * i, kInLight.y_px, kInLight.radius_px}, factor);
     Counter budget;
-    ASSERT_TRUE(one.track(painting.photograph(1.5, 300 + static_cast<std::uint32_t>(i)), mask.view(), budget).found);
-    EXPECT_EQ(budget.asked > 0, i == 0) << i;
+    const auto seen = one.track(painting.photograph(1.5, 300 + static_cast<std::uint32_t>(i)), mask.view(), budget);
+    EXPECT_TRUE(seen.found) << factor << ", " << i;
+    count += budget.asked > 0 ? 1 : 0;
   }
+  return count;
+}
+
+TEST(IntegratedTracker, ABallThatIsFollowedSurelyIsNotSearchedFor) {
+  EXPECT_EQ(searches(0.8, 16), 1);
+}
+
+TEST(IntegratedTracker, WhatIsLessAlikeIsFollowedAndAnotherLookedForNowAndThen) {
+  EXPECT_GT(searches(1.0, 16), 2);
+  EXPECT_LT(searches(1.0, 16), 6);
+}
+
+// What shade makes of the ball's colour is the colour of the floor on which it lies in the light.
+TEST(IntegratedTracker, ABrightBallOnAFloorOfItsDarkColoursDoesNotRunIntoIt) {
+  Bench bench;
+  for (int i = 0; i < 6; ++i) {
+    const Circle moved{kInLight.x_px + 4.0 * i, 150.0, kInLight.radius_px};
+    auto painting = test::ball_room();
+    painting.fill({0.0, 110.0, 320.0, 130.0}, color::lit(test::kOrange, {0.3, 0.3, 0.3}));
+    test::paint_ball(painting, moved, 0.8);
+    const auto seen = bench.look(painting, {});
+    ASSERT_TRUE(seen.found) << i;
+    EXPECT_GT(overlap(seen.box, test::around(moved)), 0.85) << i;
+  }
+}
+
+// A yellow ball is alike enough to be found as long as there is none that is more so.
+TEST(IntegratedTracker, OfTwoBallsTheOneMoreAlikeIsFollowedInTheEnd) {
+  const test::QuarterMask mask;
+  constexpr Circle kOther{250.0, 60.0, 16.0};
+  Bench bench;
+  const auto look = [&](bool with_orange) {
+    auto painting = test::ball_room(kShade);
+    test::paint_ball(painting, kOther, 0.8, {0.92, 0.62, 0.10});
+    if (with_orange) test::paint_ball(painting, kInLight, 0.8);
+    return bench.look(painting, mask.view());
+  };
+  int taken = 0;
+  for (int i = 0; i < 5; ++i) taken += look(false).found ? 1 : 0;
+  EXPECT_GT(taken, 2) << "this test could not fail";
+  BallSighting seen;
+  for (int i = 0; i < 12; ++i) seen = look(true);
+  ASSERT_TRUE(seen.found);
+  EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
+}
+
+// Something large of the ball's colours has many windows that are like it.
+TEST(IntegratedTracker, ALargeSurfaceOfItsColoursDoesNotUseUpTheLooks) {
+  const test::QuarterMask mask;
+  Bench bench;
+  auto painting = with_ball(kInLight, 0.9);
+  for (int row = 0; row < 24; ++row) {
+    const double light = 0.8 * (0.6 + 0.4 * (row % 10) / 9.0);  // from the ball's top to its bottom, again and again
+    painting.fill({220.0, 30.0 + row, 60.0, 1.0}, color::lit(test::kOrange, {light, light, light}));
+  }
+  const auto seen = bench.look(painting, mask.view());
+  ASSERT_TRUE(seen.found);
+  EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
 }
 
 TEST(IntegratedTrackerFault, ImagesThatCannotBeSearchedGiveNothing) {

@@ -351,8 +351,8 @@ double share_around(const BallPixels& pixels, const Circle& circle) {
 
 bool BallPixels::member(int x, int y) const {
   const std::uint8_t* pair = image.row(y) + std::ptrdiff_t{4} * (x / 2);
-  const std::uint8_t kind = of_code[imaging::color_code(4 * pair[2 * (x % 2)], 2 * pair[1], 2 * pair[3])];
-  return (kind & BallModel::kBright) != 0 || ((kind & BallModel::kDark) != 0 && shaded(x, y));
+  const int kind = kinds & of_code[imaging::color_code(4 * pair[2 * (x % 2)], 2 * pair[1], 2 * pair[3])];
+  return (kind & BallModel::kBright) != 0 || (kind != 0 && shaded(x, y));
 }
 
 CircleFit fit_circle(const BallPixels& pixels, double x_px, double y_px, const SizeRange& sizes) {
@@ -360,6 +360,7 @@ CircleFit fit_circle(const BallPixels& pixels, double x_px, double y_px, const S
   const double most = 0.5 * sizes.most_px * (1.0 + kSlack);
   Point from{x_px, y_px};
   CircleFit fit;
+  fit.kinds = pixels.kinds;
   for (int round = 0; round < kRounds; ++round) {
     const Ends ends = cast(pixels, from, 2.2 * most);
     auto circle = first_circle(ends, least, most);
@@ -372,7 +373,7 @@ CircleFit fit_circle(const BallPixels& pixels, double x_px, double y_px, const S
     if (const auto better = refined(edges, *circle); better && better->radius_px > least && better->radius_px < most) {
       circle = better;
     }
-    CircleFit now;
+    CircleFit now = fit;
     now.circle = *circle;
     now.agreement = agreement_of(pixels.image, edges, *circle);
     now.inside = share_inside(pixels, *circle);

@@ -29,7 +29,8 @@ struct SizeRange {
 struct BallPixels {
   ImageView image;  ///< YUYV.
   const std::uint8_t* of_code = nullptr;
-  ShadeMaskView mask;  ///< empty: there may be shade everywhere.
+  ShadeMaskView mask;                    ///< empty: there may be shade everywhere.
+  std::uint8_t kinds = BallModel::kAny;  ///< of colours that count.
 
   [[nodiscard]] bool inside(int x, int y) const {
     return x >= 0 && y >= 0 && x < image.width_px && y < image.height_px;
@@ -47,8 +48,9 @@ struct CircleFit {
   Circle circle;
   double agreement =
       0.0;  ///< share of its circumference (of what lies in the image) on which the image's edge lies and runs along it.
-  double inside = 0.0;  ///< share of the circle's area in the ball's colours.
-  double around = 0.0;  ///< share of the ring around it in these colours.
+  double inside = 0.0;                   ///< share of the circle's area in the ball's colours.
+  double around = 0.0;                   ///< share of the ring around it in these colours.
+  std::uint8_t kinds = BallModel::kAny;  ///< BallPixels::kinds.
 
   [[nodiscard]] double score() const { return agreement * inside * (1.0 - around); }
 };

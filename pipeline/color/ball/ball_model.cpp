@@ -14,9 +14,10 @@ namespace {
 constexpr double kCore = 0.8;          // of the radius: at the rim the background shines in
 constexpr double kLeastShare = 0.012;  // of the circle, for a colour to be one of the ball's
 constexpr double kDarkestLight = 0.01;
-constexpr int kLightSteps = 5;   // per channel, about one of the grid
-constexpr int kFactorSteps = 9;  // from the least factor to
-constexpr double kSoft = 0.85;   // what is hardly dark
+constexpr int kLightSteps = 5;    // per channel, about one of the grid
+constexpr int kFactorSteps = 9;   // from the least factor to
+constexpr double kSoft = 0.85;    // what is hardly dark
+constexpr double kBorder = 0.03;  // by which the factors of two depths overlap
 
 using Textures = std::vector<imaging::Rgb>;
 using Codes = std::vector<int>;
@@ -167,9 +168,31 @@ void mark(const imaging::Rgb& color, std::uint8_t kind, std::vector<std::uint8_t
   }
 }
 
+/// A depth of shade: its factor, and what else its colours may be darkened by.
+struct Depth {
+  double factor = 0.0, least = 0.0, most = 0.0;
+  std::uint8_t kind = 0;
+};
+
+/// From deep to soft, each up to midway to its neighbours.
+std::vector<Depth> depths_of(std::vector<double> factors) {
+  std::sort(factors.begin(), factors.end());
+  std::vector<Depth> depths;
+  const int count = static_cast<int>(factors.size());
+  for (int i = 0; i < count; ++i) {
+    const double factor = factors[static_cast<std::size_t>(i)];
+    const double least = i == 0 ? 0.0 : 0.5 * (factors[static_cast<std::size_t>(i - 1)] + factor);
+    const double most = i == count - 1 ? 1.0 : 0.5 * (factor + factors[static_cast<std::size_t>(i + 1)]);
+    const int depth = count <= BallModel::kDepths ? i : i * BallModel::kDepths / count;
+    depths.push_back({factor, least, most, static_cast<std::uint8_t>(BallModel::kDeepest << depth)});
+  }
+  return depths;
+}
+
 /// \param reach  how far other lights may be from this one in each channel.
 std::vector<std::uint8_t> kinds_of_codes(const Textures& textures, const Light& light, double reach,
-                                         double min_factor) {
+                                         const std::vector<Depth>& depths) {
+  const double min_factor = depths.front().factor;
   std::vector<std::uint8_t> of_code(imaging::kColorCodes, 0);
   const auto near = [reach](double channel, int step) {
     return std::clamp(channel + reach * (2.0 * step / (kLightSteps - 1) - 1.0), kDarkestLight, 1.0);
@@ -182,13 +205,16 @@ std::vector<std::uint8_t> kinds_of_codes(const Textures& textures, const Light& 
           mark(color, BallModel::kBright, of_code);
           for (int i = 0; i < kFactorSteps; ++i) {
             const double factor = min_factor + (kSoft - min_factor) * i / (kFactorSteps - 1);
-            mark({factor * color.r, factor * color.g, factor * color.b}, BallModel::kDark, of_code);
+            for (const Depth& depth : depths) {
+              if (factor < depth.least - kBorder || factor > depth.most + kBorder) continue;
+              mark({factor * color.r, factor * color.g, factor * color.b}, depth.kind, of_code);
+            }
           }
         }
       }
     }
   }
-  for (auto& kind : of_code) kind = static_cast<std::uint8_t>(kind & (BallModel::kBright | BallModel::kDark));
+  for (auto& kind : of_code) kind = static_cast<std::uint8_t>(kind & BallModel::kAny);
   return of_code;
 }
 
@@ -227,9 +253,13 @@ Result<BallModel> make_ball_model(const ColorModel& model, std::span<const doubl
   }
   set_histograms(samples, ball.bright);
   set_histograms(samples, ball.dark);
-  const double least = *std::min_element(factors.begin(), factors.end());
+  const std::vector<Depth> depths = depths_of({factors.begin(), factors.end()});
+  for (const double factor : factors) {
+    const auto of = std::ranges::find(depths, factor, &Depth::factor);
+    ball.dark_kinds.push_back(of->kind);
+  }
   const double reach = half_step(model.lights);
-  for (const Light& light : model.lights) ball.of_code.push_back(kinds_of_codes(main, light, reach, least));
+  for (const Light& light : model.lights) ball.of_code.push_back(kinds_of_codes(main, light, reach, depths));
   ball.diameter_px = 0.5 * (model.object_box.width + model.object_box.height);
   return ball;
 }

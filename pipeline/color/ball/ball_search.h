@@ -17,6 +17,9 @@ class Installments {
   /// \return whether all `units` of it have been granted, in this image and those before; then the next piece begins.
   bool pay(int units, WorkBudget& budget);
 
+  /// What was paid and is not needed counts towards the next payment.
+  void give_back(int units) { paid_ += units; }
+
  private:
   int paid_ = 0;
 };

@@ -20,12 +20,17 @@ constexpr double kGrowth = 1.33;    // of a followed circle from one image to th
 constexpr double kCatch = 1.6;      // radii about the expected place in which a followed ball's colours are looked for
 constexpr double kStillOwn = 0.8;   // of what the colours inside must be at first sight
 constexpr double kMoreAround = 0.15;  // of them may be around a followed one
-constexpr double kBetter = 0.12;      // in score, that a ball elsewhere must be
+constexpr double kBetter = 0.12;      // in worth, that a ball elsewhere must be
+constexpr int kRest = 5;              // images between two such searches, where a ball is followed
+constexpr double kSurelyLike = 0.5;   // of the divergence that is found: above, another one is looked for as well
 constexpr double kInertia = 0.7;      // of the motion from image to image
 constexpr double kUnlike = 1.0;       // a divergence above all that can be
 constexpr double kMostShaded = 0.75;  // of a circle in the mask: the rest is too little to say how it is lit
 constexpr int kLeastImage_px = 16;    // of a side
+constexpr int kUnitsOfEdges = 200;    // of these where there is a circle to look for edges at
 constexpr int kLookUnits = 300;       // a closer look at a window costs so many groups of windows
+constexpr double kClose = 2.5;        // widths of a window, between the middles of two that may lie on one thing
+constexpr double kPlain = 0.75;       // a score at which no other kinds of colours are tried
 
 Box core_of(const Circle& circle) {
   const double side = kCoreSide * 2.0 * circle.radius_px;
@@ -35,6 +40,17 @@ Box core_of(const Circle& circle) {
 Box box_of(const Circle& circle) {
   const double side = 2.0 * circle.radius_px;
   return {circle.x_px - circle.radius_px, circle.y_px - circle.radius_px, side, side};
+}
+
+std::pair<double, double> middle_of(const Box& box) {
+  return {box.x + 0.5 * box.width, box.y + 0.5 * box.height};
+}
+
+/// Between the middles.
+double distance(const Box& a, const Box& b) {
+  const auto [ax, ay] = middle_of(a);
+  const auto [bx, by] = middle_of(b);
+  return std::hypot(ax - bx, ay - by);
 }
 
 bool covers(const Circle& circle, double x, double y) {
@@ -74,15 +90,30 @@ struct IntegratedTracker::State {
     CircleFit fit;
     Likeness likeness;
   };
+  /// Of shape and colours together, 0..1; 0: unlike what may be found first.
+  [[nodiscard]] double worth(const Answer& answer) const {
+    return answer.fit.score() * std::max(0.0, 1.0 - answer.likeness.divergence / parameters.max_found_divergence);
+  }
+  /// Whether what was found elsewhere is the ball rather than what is followed: its colours alone do not tell, all that is dark enough is alike.
+  [[nodiscard]] bool replaces(const Answer& elsewhere, const Answer& followed) const {
+    return worth(elsewhere) > worth(followed) + kBetter && elsewhere.fit.score() > followed.fit.score() - kBetter;
+  }
   /// Which pixels of a box count.
   enum class Where : std::uint8_t { kEverywhere, kShaded, kLit };
 
   BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget);
-  [[nodiscard]] Answer find(const BallPixels& pixels, WorkBudget& budget, const SizeRange& sizes, BallSighting& seen);
+  /// \param followed  what needs no second look; null: nothing is followed.
+  [[nodiscard]] Answer find(const BallPixels& pixels, const Circle* followed, WorkBudget& budget,
+                            const SizeRange& sizes, BallSighting& seen);
   void restart_search();
+  void choose_windows();
   [[nodiscard]] SearchRequest request_for(const SizeRange& sizes) const;
-  [[nodiscard]] CircleFit follow(BallPixels pixels, const SizeRange& sizes) const;
-  [[nodiscard]] Answer best_of_windows(BallPixels pixels, WorkBudget& budget, const SizeRange& sizes);
+  [[nodiscard]] CircleFit follow(BallPixels pixels, const SizeRange& sizes, WorkBudget& budget);
+  /// Sets of kinds of colours, from few to all.
+  using KindsInTurn = std::array<std::uint8_t, 2>;
+  [[nodiscard]] KindsInTurn kinds_in(bool dark, int of_light) const;
+  [[nodiscard]] Answer best_of_windows(BallPixels pixels, const Circle* followed, WorkBudget& budget,
+                                       const SizeRange& sizes);
   [[nodiscard]] const std::uint8_t* colors_under(std::size_t of_light) const { return ball.of_code[of_light].data(); }
   [[nodiscard]] bool is_found(const CircleFit& fit) const;
   [[nodiscard]] bool is_kept(const CircleFit& fit) const;
@@ -114,12 +145,22 @@ struct IntegratedTracker::State {
   // From image to image.
   bool located = false;
   Circle circle;
-  std::size_t light = 0;  // of the grid, under which it was seen last
+  std::size_t light = 0;                 // of the grid, under which it was seen last
+  std::uint8_t kinds = BallModel::kAny;  // of colours in which it was
   double motion_x_px = 0.0;
   double motion_y_px = 0.0;
   int images_without = 0;
+  int images_since_look = 0;  // around, to the end of a search
   Installments next_look;
-  int next_window = 0;  // of the search that is at its end, to be looked at
+  // Of the search that is at its end, in the order in which they are looked at.
+  struct Window {
+    Match match;
+    bool dark = false;
+  };
+  std::array<Window, 2 * kMaxMatches> found_windows;
+  int windows = 0;
+  int next_window = 0;
+  std::size_t next_kinds = 0;  // of colours at that window
 };
 
 bool IntegratedTracker::State::is_found(const CircleFit& fit) const {
@@ -139,18 +180,20 @@ SearchRequest IntegratedTracker::State::request_for(const SizeRange& sizes) cons
   request.width_px = std::max(4.0, kCoreSide * sizes.min_px * std::pow(size_step, (parameters.search.sizes - 1) / 2));
   request.height_px = request.width_px;
   request.max_divergence = parameters.max_divergence;
-  request.candidates = parameters.candidates;
+  request.candidates = kMaxMatches;  // of which some are chosen
   return request;
 }
 
 void IntegratedTracker::State::restart_search() {
   search.abandon();
   next_window = 0;
+  next_kinds = 0;
 }
 
 /// Goes on with the search; when it is at its end, the windows are looked at closely in this image.
-IntegratedTracker::State::Answer IntegratedTracker::State::find(const BallPixels& pixels, WorkBudget& budget,
-                                                                const SizeRange& sizes, BallSighting& seen) {
+IntegratedTracker::State::Answer IntegratedTracker::State::find(const BallPixels& pixels, const Circle* followed,
+                                                                WorkBudget& budget, const SizeRange& sizes,
+                                                                BallSighting& seen) {
   const auto progress = search.advance(pixels.image, pixels.mask, request_for(sizes), sizes.min_px, budget);
   seen.bright_windows = search.bright().windows;
   seen.bright_examined = search.bright().examined;
@@ -158,42 +201,89 @@ IntegratedTracker::State::Answer IntegratedTracker::State::find(const BallPixels
   seen.dark_examined = search.dark().examined;
   seen.exact = progress == BallSearch::Progress::kAtEnd;
   if (!seen.exact) return {};
-  const Answer best = best_of_windows(pixels, budget, sizes);
-  seen.exact = next_window == search.bright().count + search.dark().count;
+  if (next_window == 0 && next_kinds == 0) choose_windows();
+  const Answer best = best_of_windows(pixels, followed, budget, sizes);
+  seen.exact = next_window == windows;
   if (seen.exact || best.fit.agreement > 0.0) restart_search();
   return best;
 }
 
+/// What a ball may show whose colours were found under this light: those alone, in which a ball on a brown floor does not run into it, and
+/// all that there are, as of one that is half lit.
+IntegratedTracker::State::KindsInTurn IntegratedTracker::State::kinds_in(bool dark, int of_light) const {
+  return {dark ? ball.kind_of_dark(static_cast<std::size_t>(of_light)) : BallModel::kBright, BallModel::kAny};
+}
+
 /// Near where it was last, moving on as it moved.
-CircleFit IntegratedTracker::State::follow(BallPixels pixels, const SizeRange& sizes) const {
+/// The colours that it had there come first; others, at the price of a look each, where those do not make a plain ball.
+CircleFit IntegratedTracker::State::follow(BallPixels pixels, const SizeRange& sizes, WorkBudget& budget) {
   pixels.of_code = colors_under(light);
   const double diameter = 2.0 * circle.radius_px;
   const SizeRange near{std::max(sizes.min_px, diameter / kGrowth), std::min(sizes.most_px, diameter * kGrowth)};
   if (near.min_px > near.most_px) return {};
   const Circle expected{circle.x_px + motion_x_px, circle.y_px + motion_y_px, kCatch * circle.radius_px};
-  const Circle middle = middle_of_members(pixels, expected);
-  return fit_circle(pixels, middle.x_px, middle.y_px, near);
+  const auto fit_to = [&](std::uint8_t some) {
+    pixels.kinds = some;
+    const Circle middle = middle_of_members(pixels, expected);
+    return fit_circle(pixels, middle.x_px, middle.y_px, near);
+  };
+  CircleFit best = fit_to(kinds);
+  for (const std::uint8_t others : {BallModel::kAny, BallModel::kBright}) {
+    if (is_found(best) && best.score() > kPlain) break;
+    if (others == kinds || !next_look.pay(kLookUnits, budget)) continue;
+    const CircleFit fit = fit_to(others);
+    if (fit.score() > best.score()) best = fit;
+  }
+  return best;
+}
+
+/// Of either search the best, then those close to a better one: something large of such colours has many windows, the ball one.
+void IntegratedTracker::State::choose_windows() {
+  windows = 0;
+  for (const bool dark : {false, true}) {
+    const SearchResult& result = dark ? search.dark() : search.bright();
+    const auto matches = std::span(result.matches).first(static_cast<std::size_t>(result.count));
+    const int most = windows + parameters.candidates;
+    std::array<bool, kMaxMatches> is_close{};
+    for (std::size_t i = 0; i < matches.size(); ++i) {
+      is_close[i] = std::ranges::any_of(matches.first(i), [&](const Match& better) {
+        return distance(better.box, matches[i].box) < kClose * matches[i].box.width;
+      });
+    }
+    for (const bool close : {false, true}) {
+      for (std::size_t i = 0; i < matches.size() && windows < most; ++i) {
+        if (is_close[i] == close) found_windows[static_cast<std::size_t>(windows++)] = {matches[i], dark};
+      }
+    }
+  }
 }
 
 /// The best circle at those windows of both searches that have not been looked at yet.
-IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallPixels pixels, WorkBudget& budget,
-                                                                           const SizeRange& sizes) {
+IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallPixels pixels, const Circle* followed,
+                                                                           WorkBudget& budget, const SizeRange& sizes) {
   Answer best;
-  const SearchResult& bright = search.bright();
-  const SearchResult& dark = search.dark();
-  for (; next_window < bright.count + dark.count; ++next_window) {
-    const Match& match = next_window < bright.count
-                             ? bright.matches[static_cast<std::size_t>(next_window)]
-                             : dark.matches[static_cast<std::size_t>(next_window - bright.count)];
-    const double x = match.box.x + 0.5 * match.box.width;
-    const double y = match.box.y + 0.5 * match.box.height;
+  for (; next_window < windows; ++next_window) {
+    const auto [match, dark] = found_windows[static_cast<std::size_t>(next_window)];
+    const auto [x, y] = middle_of(match.box);
+    if (followed != nullptr && covers(*followed, x, y)) continue;
     if (best.fit.agreement > 0.0 && covers(best.fit.circle, x, y)) continue;
-    if (!next_look.pay(kLookUnits, budget)) return best;
     pixels.of_code = colors_under(static_cast<std::size_t>(match.light) % ball.of_code.size());
-    const CircleFit fit = fit_circle(pixels, x, y, sizes);
-    if (!is_found(fit) || fit.score() <= best.fit.score()) continue;
-    const Likeness likeness = likeness_of(pixels, fit.circle);
-    if (likeness.divergence <= parameters.max_found_divergence) best = {fit, likeness};
+    const KindsInTurn in_turn = kinds_in(dark, match.light);
+    for (; next_kinds < in_turn.size(); ++next_kinds) {
+      pixels.kinds = in_turn[next_kinds];
+      if (!next_look.pay(kLookUnits, budget)) return best;
+      const CircleFit fit = fit_circle(pixels, x, y, sizes);
+      if (fit.agreement <= 0.0) {
+        next_look.give_back(kUnitsOfEdges);
+        break;  // with more colours there is none either
+      }
+      if (const Answer answer{fit, is_found(fit) ? likeness_of(pixels, fit.circle) : Likeness{}};
+          worth(answer) > worth(best)) {
+        best = answer;
+      }
+      if (is_found(fit) || fit.around > parameters.ball.max_around) break;  // more colours would be more around it
+    }
+    next_kinds = 0;
   }
   return best;
 }
@@ -209,6 +299,7 @@ void IntegratedTracker::State::remember(const Answer& answer) {
   }
   circle = now;
   light = static_cast<std::size_t>(answer.likeness.light) % ball.of_code.size();
+  kinds = answer.fit.kinds;
   located = true;
   images_without = 0;
 }
@@ -281,15 +372,18 @@ BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeM
   factor = imaging::reduction_for(image.width_px, image.height_px, sizes.min_px);
   Answer answer;
   if (located) {
-    answer.fit = follow(pixels, sizes);
+    answer.fit = follow(pixels, sizes, budget);
     if (is_kept(answer.fit)) answer.likeness = likeness_of(pixels, answer.fit.circle);
   }
   bool is_there = answer.likeness.divergence <= parameters.max_kept_divergence;
-  if (is_there && is_found(answer.fit)) {
+  const bool is_plain = is_there && is_found(answer.fit);
+  const bool is_sure = is_plain && answer.likeness.divergence <= kSurelyLike * parameters.max_found_divergence;
+  if (is_sure || (is_plain && ++images_since_look < kRest)) {
     restart_search();
   } else {
-    const Answer elsewhere = find(pixels, budget, sizes, seen);
-    const bool is_better = elsewhere.fit.score() > (is_there ? answer.fit.score() + kBetter : 0.0);
+    const Answer elsewhere = find(pixels, is_there ? &answer.fit.circle : nullptr, budget, sizes, seen);
+    if (seen.exact) images_since_look = 0;
+    const bool is_better = is_there ? replaces(elsewhere, answer) : worth(elsewhere) > 0.0;
     if (is_better) {
       if (!covers(circle, elsewhere.fit.circle.x_px, elsewhere.fit.circle.y_px)) images_without = 1;  // no motion
       answer = elsewhere;
