@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "pipeline/imaging/color_code.h"
 #include "tests/color/ball_scene.h"
@@ -90,6 +91,34 @@ TEST(BallModel, WhatHidesSomeOfTheBallIsNotOneOfItsColours) {
   EXPECT_EQ(lights_of(ball, kDarkFloor), 0);
   EXPECT_GT(lights_of(ball, {0.5, 0.25, 0.05}), 0) << "the ball itself";
   EXPECT_GT(lights_of(ball, {0.2, 0.1, 0.02}), 0) << "in shade";
+}
+
+TEST(BallModel, HowDarkAColourIsSaysWhichDepthOfShadeItIsOf) {
+  const ColorModel learned = test::ball_model();
+  const BallModel ball = make_ball_model(learned, std::vector{0.40, 0.15, 0.65}).value();
+  const std::uint8_t deep = BallModel::kDeepest, middle = deep << 1, soft = deep << 2;
+  EXPECT_EQ(ball.dark_kinds, (std::vector<std::uint8_t>{middle, deep, soft})) << "in the order of the factors";
+  const std::size_t lights = ball.bright.lights.size();
+  EXPECT_EQ(ball.kind_of_dark(lights), deep);
+  int of_deep = 0, of_soft = 0, of_both = 0;
+  for (const auto& of_code : ball.of_code) {
+    for (const std::uint8_t kinds : of_code) {
+      EXPECT_EQ(kinds & ~BallModel::kAny, 0);
+      of_deep += (kinds & deep) != 0 ? 1 : 0;
+      of_soft += (kinds & soft) != 0 ? 1 : 0;
+      of_both += (kinds & deep) != 0 && (kinds & soft) != 0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(of_deep, 0);
+  EXPECT_GT(of_soft, 0);
+  EXPECT_LT(of_both, of_deep / 2) << "or depths tell nothing";
+}
+
+TEST(BallModel, OfMoreFactorsThanDepthsNeighboursShareOne) {
+  const BallModel ball = make_ball_model(test::ball_model(), std::vector{0.2, 0.3, 0.4, 0.5}).value();
+  EXPECT_TRUE(std::ranges::is_sorted(ball.dark_kinds));
+  EXPECT_EQ(ball.dark_kinds.front(), BallModel::kDeepest);
+  EXPECT_EQ(ball.dark_kinds.back(), BallModel::kDeepest << (BallModel::kDepths - 1));
 }
 
 TEST(BallModel, OfAGreyBallGreyIsTheColour) {

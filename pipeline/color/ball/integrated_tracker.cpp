@@ -262,7 +262,7 @@ void IntegratedTracker::State::choose_windows() {
 IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallPixels pixels, const Circle* followed,
                                                                            WorkBudget& budget, const SizeRange& sizes) {
   Answer best;
-  for (; next_window < windows; ++next_window) {
+  for (; next_window < windows; ++next_window, next_kinds = 0) {
     const auto [match, dark] = found_windows[static_cast<std::size_t>(next_window)];
     const auto [x, y] = middle_of(match.box);
     if (followed != nullptr && covers(*followed, x, y)) continue;
@@ -275,7 +275,7 @@ IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallP
       const CircleFit fit = fit_circle(pixels, x, y, sizes);
       if (fit.agreement <= 0.0) {
         next_look.give_back(kUnitsOfEdges);
-        break;  // with more colours there is none either
+        break;  // with more colours there seldom is one
       }
       if (const Answer answer{fit, is_found(fit) ? likeness_of(pixels, fit.circle) : Likeness{}};
           worth(answer) > worth(best)) {
@@ -283,7 +283,6 @@ IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallP
       }
       if (is_found(fit) || fit.around > parameters.ball.max_around) break;  // more colours would be more around it
     }
-    next_kinds = 0;
   }
   return best;
 }
