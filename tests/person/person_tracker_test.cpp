@@ -94,6 +94,33 @@ TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
   EXPECT_TRUE(tracker.shirts().knows(1));
 }
 
+// Faces are looked for in every other image: in between his shirt does not name the person again.
+TEST(PersonTracker, AStrangerStaysOneUntilFacesAreLookedForAgain) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  ASSERT_EQ(tracker.update({picture.view(), face_of(std::nullopt)}).person, kStranger);
+  ASSERT_FALSE(tracker.face_is_due());
+  const auto between = tracker.update({picture.view()});
+  EXPECT_EQ(between.person, kStranger);
+  EXPECT_EQ(between.source, PersonSource::kShirt);
+  EXPECT_EQ(between.box, kShirtBox);
+  ASSERT_TRUE(tracker.face_is_due());
+  EXPECT_EQ(tracker.update({picture.view()}).person, 1) << "his face is gone: from behind the shirt alone counts";
+}
+
+TEST(PersonTracker, AStrangerBesideThePersonSaysNothingOfHisShirt) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  ASSERT_EQ(tracker.update({picture.view(), face_of(std::nullopt)}).person, kStranger);
+  Picture elsewhere;
+  elsewhere.fill({10, 80, 80, 100}, kRed);
+  EXPECT_EQ(tracker.update({elsewhere.view()}).person, 1);
+}
+
 // Two primaries that disagree: the surer one decides, the marker where they are equal.
 TEST(PersonTracker, BelievesTheSurerOfMarkerAndFace) {
   PersonTracker tracker;

@@ -11,12 +11,6 @@ namespace {
 
 constexpr int kImagesToForget = 15;  // without the latest person of interest
 
-bool is_above(const Box& face, const Box& shirt) {
-  constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
-  const double middle = face.x + face.width / 2, above = shirt.y - face.y;
-  return middle >= shirt.x && middle <= shirt.x + shirt.width && above >= 0.0 && above <= kMostAbove * face.width;
-}
-
 }  // namespace
 
 Identifier::Identifier(std::optional<FaceDetector> detector, std::unique_ptr<FaceRecognizer> recognizer,
@@ -57,7 +51,8 @@ bool Identifier::is_beside(const FaceTrack& face, std::optional<Label> asked) co
   if (!interest || face.match->label == interest) return false;
   if (last_.source == PersonSource::kFaceColor && last_.person == interest)
     return intersection(face.box, last_.box).empty();
-  if (last_.source != PersonSource::kShirt || last_.person != interest) return !asked;
+  const bool by_shirt = last_.source == PersonSource::kShirt;
+  if (!by_shirt || (last_.person != interest && last_.person != kStranger)) return !asked;
   return !is_above(face.box, last_.box);
 }
 
@@ -127,7 +122,7 @@ PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> a
   last_ = people.person;
   last_marker_face_ = marker ? std::optional(marker->face) : std::nullopt;
   remember(last_, asked);
-  if (last_.person != kStranger) people.expected_face = expected_face();
+  if (last_.person != kStranger || last_.source == PersonSource::kShirt) people.expected_face = expected_face();
   if (!faces_) return people;
   for (const FaceTrack& track : faces_->tracks()) {
     if (track.missed > 0) continue;

@@ -39,6 +39,12 @@ Box face_above(const Box& shirt, double face_px) {
   return {middle - face_px / 2, shirt.y - kAbove * face_px, face_px, face_px};
 }
 
+bool is_above(const Box& face, const Box& shirt) {
+  constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
+  const double middle = face.x + face.width / 2, above = shirt.y - face.y;
+  return middle >= shirt.x && middle <= shirt.x + shirt.width && above >= 0.0 && above <= kMostAbove * face.width;
+}
+
 PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)
     : parameters_(parameters),
       labels_(parameters.shirt.max_width_px, parameters.shirt.max_height_px),
@@ -80,6 +86,7 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
   if (!due) now.face.reset();
   now.head = head_of(now);
   const auto settled = feedback_.classify(now);
+  if (due) stranger_.reset();
   shirts_.observe(now);
   if (now.face) face_colors_.observe_face(now, *now.face);
   if (!settled) return {};
@@ -87,7 +94,13 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
   sighting.person = settled->label;
   sighting.confidence = settled->confidence;
   locate(input, settled->label, sighting);
-  if (sighting.source == PersonSource::kFaceColor) shirts_.learn_negative();
+  if (sighting.person == kStranger && sighting.source == PersonSource::kFace) stranger_ = sighting;
+  if (is_of_stranger(sighting)) {
+    sighting.person = kStranger;
+    sighting.confidence = stranger_->confidence;
+  } else if (sighting.source == PersonSource::kFaceColor) {
+    shirts_.learn_negative();
+  }
   measure(input, sighting);
   confirm_head(now, sighting);
   return sighting;
@@ -128,6 +141,13 @@ void PersonTracker::confirm_head(const PersonImage& input, const PersonSighting&
   if (sighting.source == PersonSource::kFace) face_colors_.confirm(*sighting.person, sighting.box);
   if (sighting.source == PersonSource::kShirt && sighting.face_px > 0.0)
     face_colors_.confirm(*sighting.person, face_above(sighting.box, sighting.face_px));
+}
+
+// Colours where the last face was a stranger's are his until faces are looked for again.
+bool PersonTracker::is_of_stranger(const PersonSighting& sighting) const {
+  if (!stranger_) return false;
+  if (sighting.source == PersonSource::kShirt) return is_above(stranger_->box, sighting.box);
+  return sighting.source == PersonSource::kFaceColor && !intersection(stranger_->box, sighting.box).empty();
 }
 
 // The height of a shirt changes least when its person turns.

@@ -64,8 +64,11 @@ struct PersonSighting {
 /// \return where the face above a shirt is looked for, both in pixels of one image. \param face_px  the face's width at the person's distance. Ours.
 Box face_above(const Box& shirt, double face_px);
 
+/// Whether a face is where one above that shirt may be, both in pixels of one image. Ours.
+bool is_above(const Box& face, const Box& shirt);
+
 /// One person from image to image by marker, face, face colour and shirt (6.2, 6.3): Alg. 6.1 with marker and face as primary and the two others as secondary
-/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a stranger's overrides a shirt and teaches it
+/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a stranger's overrides a shirt, until faces are looked for again, and teaches it
 /// nothing; the colours of a head that is followed show that what looks like the shirt elsewhere is none (6.3.1).
 ///
 /// Threads: one.
@@ -89,6 +92,7 @@ class PersonTracker {
   void measure(const PersonImage& input, PersonSighting& sighting);
   [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
   void confirm_head(const PersonImage& input, const PersonSighting& sighting);
+  [[nodiscard]] bool is_of_stranger(const PersonSighting& sighting) const;
 
   PersonTrackerParameters parameters_;
   ColorLabels labels_;
@@ -97,7 +101,8 @@ class PersonTracker {
   FaceColorClassifier face_colors_;
   ShirtClassifier shirts_;
   FeedbackClassifier<PersonImage> feedback_;
-  int since_face_ = 0;    // images since one was looked for
+  int since_face_ = 0;                      // images since one was looked for
+  std::optional<PersonSighting> stranger_;  // who was decided on by face when faces were last looked for
   double face_px_ = 0.0;  // width of the last face that identified the person, or of what would be it by the marker
   double shirt_per_face_ = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
 };
