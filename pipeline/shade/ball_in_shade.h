@@ -21,4 +21,7 @@ struct UncertainBall {
 /// between the rays. Ours.
 bool may_lie_in_shade(const UncertainBall& ball, const LampView& lamp, const Eigen::Vector3f& p_WL);
 
+/// Whether the map hides the lamp's centre from all of a ball, by the same rays: wherever it may be.
+bool lies_in_shade(const UncertainBall& ball, const LampView& lamp, const Eigen::Vector3f& p_WL);
+
 }  // namespace cgsr::shade

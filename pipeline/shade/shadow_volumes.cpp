@@ -105,6 +105,15 @@ const ShadeMasks& ShadowVolumes::look(const geometry::Pose& X_WC, const geometry
 
 bool ShadowVolumes::may_be_shaded(const BallInImage& ball) const {
   if (!valid_ || !(ball.radius_px > 0.0)) return true;
+  return may_lie_in_shade(place_of(ball), lamps_[now_].lamp(), p_WL_.cast<float>());
+}
+
+bool ShadowVolumes::is_shaded(const BallInImage& ball) const {
+  if (!valid_ || !(ball.radius_px > 0.0)) return false;
+  return lies_in_shade(place_of(ball), lamps_[now_].lamp(), p_WL_.cast<float>());
+}
+
+UncertainBall ShadowVolumes::place_of(const BallInImage& ball) const {
   const Eigen::Vector2d ideal = camera_.ideal_of(ball.middle_px);
   // Beside the axis a ball shows an ellipse, longer by this factor away from the axis: the circle is between its axes.
   const double longer = std::sqrt(1.0 + ideal.squaredNorm());
@@ -125,7 +134,7 @@ bool ShadowVolumes::may_be_shaded(const BallInImage& ball) const {
   uncertain.along_m =
       static_cast<float>(parameters_.sigmas * distance_m * std::hypot(kBallSize, kCircle_px / ball.radius_px));
   uncertain.across_m = static_cast<float>(parameters_.sigmas * across_m);
-  return may_lie_in_shade(uncertain, lamps_[now_].lamp(), p_WL_.cast<float>());
+  return uncertain;
 }
 
 bool ShadowVolumes::prepare(const Eigen::Vector3d& p_WL, WorkBudget& budget) {

@@ -7,6 +7,7 @@
 
 #include "pipeline/render/surface_raster.h"
 #include "pipeline/render/view.h"
+#include "pipeline/shade/ball_in_shade.h"
 #include "pipeline/shade/mask_growth.h"
 #include "pipeline/shade/shade_parameters.h"
 #include "pipeline/shade/silhouettes.h"
@@ -64,6 +65,9 @@ class ShadowVolumes {
   /// shaded far before the ball. With pose, camera and errors of the last look(), and the lamp that is prepared. Ours; the dissertation has
   /// the masks alone. \return true before the first look() as well.
   [[nodiscard]] bool may_be_shaded(const BallInImage& ball) const;
+
+  /// Whether all of it lies in shade, wherever it may be. \return false before the first look().
+  [[nodiscard]] bool is_shaded(const BallInImage& ball) const;
 
   /// Computes what depends on the lamp's place, a unit (Silhouettes::work_unit) for each grant, and goes on from there when called again with the
   /// same place. \return whether it is complete: look() at this place is then as cheap as at the last one. What is not complete leaves the place
@@ -124,6 +128,7 @@ class ShadowVolumes {
 
   const ShadeMasks& look(const geometry::Pose& X_WC, const geometry::Camera& camera, const Eigen::Vector3d& p_WL,
                          int widen_cells, const ShadeErrors* errors);
+  [[nodiscard]] UncertainBall place_of(const BallInImage& ball) const;
   void take_camera(const geometry::Camera& camera);
   void mark_sides(const Eigen::Vector3f& p_WL);
   void draw_side(const Silhouettes::Side& side, const Eigen::Vector3f& p_WL);

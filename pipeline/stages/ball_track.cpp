@@ -18,10 +18,17 @@ class ShadeInMap final : public color::ShadeAtPlace {
   explicit ShadeInMap(const shade::ShadowVolumes& volumes) : volumes_(volumes) {}
 
   [[nodiscard]] bool may_be_shaded(const color::Circle& circle, double diameter_m) const override {
-    return volumes_.may_be_shaded({{circle.x_px - 0.5, circle.y_px - 0.5}, circle.radius_px, 0.5 * diameter_m});
+    return volumes_.may_be_shaded(in_image(circle, diameter_m));
+  }
+  [[nodiscard]] bool is_shaded(const color::Circle& circle, double diameter_m) const override {
+    return volumes_.is_shaded(in_image(circle, diameter_m));
   }
 
  private:
+  static shade::BallInImage in_image(const color::Circle& circle, double diameter_m) {
+    return {{circle.x_px - 0.5, circle.y_px - 0.5}, circle.radius_px, 0.5 * diameter_m};
+  }
+
   const shade::ShadowVolumes& volumes_;
 };
 

@@ -103,16 +103,19 @@ TEST(IntegratedTracker, ALighterBrownBallInTheLightIsNotFoundEither) {
 /// What says of every place the same.
 class AllPlaces final : public ShadeAtPlace {
  public:
-  explicit AllPlaces(bool shaded) : shaded_(shaded) {}
+  explicit AllPlaces(bool shaded) : AllPlaces(shaded, shaded) {}
+  AllPlaces(bool may_be, bool surely) : shaded_(may_be), surely_(surely) {}
   bool may_be_shaded(const Circle& circle, double diameter_m) const override {
     asked_of_ = circle;
     EXPECT_EQ(diameter_m, 0.20);
     return shaded_;
   }
+  [[nodiscard]] bool is_shaded(const Circle& /*circle*/, double /*diameter_m*/) const override { return surely_; }
   [[nodiscard]] const Circle& asked_of() const { return asked_of_; }
 
  private:
   bool shaded_;
+  bool surely_;
   mutable Circle asked_of_;
 };
 
@@ -138,6 +141,65 @@ TEST(IntegratedTracker, ABallThatIsFollowedOutOfAShadedPlaceHasToTurnBright) {
   Bench bench;
   ASSERT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
   EXPECT_FALSE(bench.look(with_ball(kInShade, kShade), mask.view(), &lit).found);
+}
+
+/// A ball that lies in shade for so many images, where it is as bright as that.
+void follow_in_shade(double factor, int images, Bench& bench, const AllPlaces& shaded = AllPlaces(true)) {
+  const test::QuarterMask mask;
+  for (int i = 0; i < images; ++i) {
+    const Circle at{kInShade.x_px + 0.2 * i, kInShade.y_px, kInShade.radius_px};
+    ASSERT_TRUE(bench.look(with_ball(at, factor), mask.view(), &shaded).found) << i;
+  }
+}
+
+/// Looks at a room without the ball until it is lost.
+void lose_the_ball(Bench& bench) {
+  const test::QuarterMask mask;
+  const AllPlaces shaded(true);
+  for (int i = 0; i < 6; ++i) EXPECT_FALSE(bench.look(test::ball_room(kShade), mask.view(), &shaded).found);
+}
+
+// By daylight a ball in the lamp's shade is nearly as bright as elsewhere: a brown one there is no orange one.
+TEST(IntegratedTracker, WhereShadeIsSeenToBeBrightADarkBallInItIsAnother) {
+  const test::QuarterMask mask;
+  const AllPlaces shaded(true);
+  Bench without;
+  EXPECT_TRUE(without.look(with_ball(kInShade, kShade), mask.view(), &shaded).found) << "this test could not fail";
+  Bench bench;
+  follow_in_shade(0.9, 15, bench);
+  lose_the_ball(bench);
+  EXPECT_FALSE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
+  EXPECT_TRUE(bench.look(with_ball(kInShade, 0.9), mask.view(), &shaded).found) << "the ball itself is";
+  lose_the_ball(bench);
+  EXPECT_FALSE(bench.look(with_ball(kInShade, kShade), mask.view()).found) << "by the mask alone";
+  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), {}).found) << "where no shade is known";
+}
+
+TEST(IntegratedTracker, WhereItMayLieInTheLightABrightBallSaysNothingOfShade) {
+  const test::QuarterMask mask;
+  const AllPlaces perhaps(true, false);
+  Bench bench;
+  follow_in_shade(0.9, 15, bench, perhaps);
+  lose_the_ball(bench);
+  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &perhaps).found);
+}
+
+TEST(IntegratedTracker, WhereShadeIsSeenToBeDarkTheBallIsFoundInItAgain) {
+  const test::QuarterMask mask;
+  const AllPlaces shaded(true);
+  Bench bench;
+  follow_in_shade(kShade, 15, bench);
+  lose_the_ball(bench);
+  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
+}
+
+// What was seen of shade says nothing of a ball that has not been out of view: the lamp may have gone out.
+TEST(IntegratedTracker, AFollowedBallMayBecomeDarkerThanItEverWas) {
+  const test::QuarterMask mask;
+  const AllPlaces shaded(true);
+  Bench bench;
+  follow_in_shade(0.9, 15, bench);
+  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
 }
 
 TEST(IntegratedTracker, TheMaskSavesWork) {

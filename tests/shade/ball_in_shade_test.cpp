@@ -37,6 +37,10 @@ class BallInShade : public testing::Test {
     volumes_.look(X_WC_, Camera(), kLamp, errors);
     return volumes_.may_be_shaded(shown(p_WB, X_WC_, Camera()));
   }
+  [[nodiscard]] bool is_shaded(const Vector3d& p_WB, const ShadeErrors& errors = {}) {
+    volumes_.look(X_WC_, Camera(), kLamp, errors);
+    return volumes_.is_shaded(shown(p_WB, X_WC_, Camera()));
+  }
 
   Map map_ = table_over_floor();
   ShadowVolumes volumes_{map_, {}};
@@ -49,6 +53,15 @@ TEST_F(BallInShade, OnTheFloorUnderTheTableItIsBesideAndAboveItIsNot) {
   EXPECT_TRUE(may_be_shaded({0.0, 0.6, kRadius_m})) << "half of it";
   EXPECT_FALSE(may_be_shaded({0.0, 0.95, kRadius_m})) << "the floor that it lies on throws no shade on it";
   EXPECT_FALSE(may_be_shaded({0.0, 0.0, 0.75 + kRadius_m})) << "nor does the table";
+}
+
+TEST_F(BallInShade, DeepUnderTheTableItSurelyIsAtTheBorderItIsNot) {
+  EXPECT_TRUE(is_shaded({0.0, 0.0, kRadius_m}));
+  EXPECT_FALSE(is_shaded({0.0, 0.6, kRadius_m})) << "half of it";
+  EXPECT_FALSE(is_shaded({0.0, 0.95, kRadius_m})) << "beside";
+  ShadeErrors errors;
+  errors.lamp = 0.4 * 0.4 * Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(is_shaded({0.0, 0.0, kRadius_m}, errors)) << "the lamp may be elsewhere";
 }
 
 // The ray to either passes through the shade under the table: a mask of rays says the same of both.
@@ -96,6 +109,9 @@ TEST_F(BallInShade, RaysToPointsOnBallsAgree) {
     // The shade at this height: the table's rectangle, stretched from the lamp's foot.
     const double stretch = (kLamp.z() - p.z()) / (kLamp.z() - 0.75);
     const double inside = std::min(0.6 * stretch - std::abs(p.x()), 0.4 * stretch - std::abs(p.y()));
+    if (inside < kRadius_m) {
+      EXPECT_FALSE(is_shaded(p)) << p.transpose();
+    }
     if (inside > 0.0) {
       ++shaded;
       EXPECT_TRUE(may_be_shaded(p)) << p.transpose();
@@ -124,6 +140,7 @@ TEST(BallInShadeFault, WhatIsNotKnownMayBeShaded) {
   const Map map = table_over_floor();
   ShadowVolumes volumes(map, {});
   EXPECT_TRUE(volumes.may_be_shaded({{320.0, 240.0}, 20.0, kRadius_m})) << "nothing was looked at";
+  EXPECT_FALSE(volumes.is_shaded({{320.0, 240.0}, 20.0, kRadius_m})) << "nothing was looked at";
   volumes.look(looking_from({-3.0, 0.0, 1.2}, {0.0, 0.0, 0.3}), Camera(), kLamp);
   EXPECT_TRUE(volumes.may_be_shaded({{320.0, 240.0}, 0.0, kRadius_m})) << "no circle";
 }
@@ -135,6 +152,7 @@ TEST(BallInShadeAlloc, AskingTakesNoMemory) {
   volumes.look(looking_from({-3.0, 0.0, 1.2}, {0.0, 0.0, 0.3}), Camera(), kLamp);
   const test::AllocationGuard guard;
   EXPECT_TRUE(volumes.may_be_shaded({{319.5, 239.5}, 20.0, kRadius_m}));
+  EXPECT_FALSE(volumes.is_shaded({{319.5, 39.5}, 20.0, kRadius_m}));
   EXPECT_EQ(guard.allocations(), 0U);
 }
 

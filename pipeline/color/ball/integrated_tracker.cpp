@@ -5,16 +5,14 @@
 #include <utility>
 
 #include "pipeline/color/ball/ball_circle.h"
+#include "pipeline/color/ball/ball_likeness.h"
 #include "pipeline/color/ball/ball_model.h"
 #include "pipeline/color/ball/ball_search.h"
-#include "pipeline/color/ball/image_part.h"
-#include "pipeline/color/search/box_divergence.h"
 #include "pipeline/imaging/reduce.h"
 
 namespace cgsr::color {
 namespace {
 
-constexpr double kCoreSide = 0.62;  // of the diameter: a square that lies inside the circle
 constexpr double kSizeLimit = 5.0;  // of the learned diameter, where nothing else is known
 constexpr double kGrowth = 1.33;    // of a followed circle from one image to the next
 constexpr double kCatch = 1.6;      // radii about the expected place in which a followed ball's colours are looked for
@@ -24,18 +22,11 @@ constexpr double kBetter = 0.12;      // in worth, that a ball elsewhere must be
 constexpr int kRest = 5;              // images between two such searches, where a ball is followed
 constexpr double kSurelyLike = 0.5;   // of the divergence that is found: above, another one is looked for as well
 constexpr double kInertia = 0.7;      // of the motion from image to image
-constexpr double kUnlike = 1.0;       // a divergence above all that can be
-constexpr double kMostShaded = 0.75;  // of a circle in the mask: the rest is too little to say how it is lit
 constexpr int kLeastImage_px = 16;    // of a side
 constexpr int kUnitsOfEdges = 200;    // of these where there is a circle to look for edges at
 constexpr int kLookUnits = 300;       // a closer look at a window costs so many groups of windows
 constexpr double kClose = 2.5;        // widths of a window, between the middles of two that may lie on one thing
 constexpr double kPlain = 0.75;       // a score at which no other kinds of colours are tried
-
-Box core_of(const Circle& circle) {
-  const double side = kCoreSide * 2.0 * circle.radius_px;
-  return {circle.x_px - 0.5 * side, circle.y_px - 0.5 * side, side, side};
-}
 
 Box box_of(const Circle& circle) {
   const double side = 2.0 * circle.radius_px;
@@ -59,6 +50,11 @@ bool covers(const Circle& circle, double x, double y) {
   return dx * dx + dy * dy < circle.radius_px * circle.radius_px;
 }
 
+/// Mean of the channels.
+double gain_of(const Light& light) {
+  return (light.r + light.g + light.b) / 3.0;
+}
+
 bool can_be_searched(const ImageView& image, int max_width_px, int max_height_px) {
   return image.format == PixelFormat::kYuyv && image.width_px >= kLeastImage_px && image.height_px >= kLeastImage_px &&
          image.width_px % 2 == 0 && image.width_px <= max_width_px && image.height_px <= max_height_px;
@@ -75,17 +71,10 @@ struct IntegratedTracker::State {
       : parameters(p),
         ball(std::move(ball_model)),
         search(std::move(both)),
-        bright_divergence(ball.bright, p.search.divergence),
-        dark_divergence(ball.dark, p.search.divergence),
-        labels(max_width, max_height),
+        likeness(ball, search, p.search.divergence, p.ball.diameter_m, max_width, max_height),
         max_width_px(max_width),
         max_height_px(max_height) {}
 
-  struct Likeness {
-    double divergence = kUnlike;
-    int light = 0;  ///< of the bright or dark model.
-    bool dark = false;
-  };
   struct Answer {
     CircleFit fit;
     Likeness likeness;
@@ -98,8 +87,6 @@ struct IntegratedTracker::State {
   [[nodiscard]] bool replaces(const Answer& elsewhere, const Answer& followed) const {
     return worth(elsewhere) > worth(followed) + kBetter && elsewhere.fit.score() > followed.fit.score() - kBetter;
   }
-  /// Which pixels of a box count.
-  enum class Where : std::uint8_t { kEverywhere, kShaded, kLit };
 
   BallSighting look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget);
   /// \param followed  what needs no second look; null: nothing is followed.
@@ -119,20 +106,22 @@ struct IntegratedTracker::State {
   [[nodiscard]] bool is_kept(const CircleFit& fit) const;
   void remember(const Answer& answer);
   void describe(const Answer& answer, const BallPixels& pixels, BallSighting& seen) const;
-  [[nodiscard]] Likeness likeness_of(const BallPixels& pixels, const Circle& of);
-  [[nodiscard]] Likeness likeness_in_the_light(const BallPixels& pixels, const Circle& of);
-  [[nodiscard]] bool looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of);
-  [[nodiscard]] BoxDivergence::Answer bright_of(const BallPixels& pixels, const Box& box, Where where);
-  [[nodiscard]] BoxDivergence::Answer dark_of(const BallPixels& pixels, const Box& box, Where where);
-  [[nodiscard]] BoxDivergence::Answer divergence_of(const BallPixels& pixels, Box box, Where where,
-                                                    const imaging::LabelTable& table, BoxDivergence& divergence);
+  [[nodiscard]] Likeness likeness_of(const BallPixels& pixels, const Circle& of) {
+    return likeness.of(pixels, of, factor, places);
+  }
+  /// For the shade that is known here. Where neither mask nor places are, none is.
+  [[nodiscard]] bool is_too_dark(const BallPixels& pixels, const Likeness& of) const {
+    const bool knows_shade = !pixels.mask.empty() || places != nullptr;
+    return knows_shade && !light_in_shade.is_plausible(gain_of(light_of(of)));
+  }
+  [[nodiscard]] const Light& light_of(const Likeness& of) const {
+    return (of.dark ? ball.dark : ball.bright).lights[static_cast<std::size_t>(of.light)];
+  }
 
   IntegratedParameters parameters;
   BallModel ball;
   BallSearch search;
-  BoxDivergence bright_divergence;
-  BoxDivergence dark_divergence;
-  imaging::ReducedImage labels;  // about a circle
+  BallLikeness likeness;
   SizeRange usual_sizes;
   double size_step = 1.0;
   int max_width_px;
@@ -149,6 +138,7 @@ struct IntegratedTracker::State {
   std::uint8_t kinds = BallModel::kAny;  // of colours in which it was
   double motion_x_px = 0.0;
   double motion_y_px = 0.0;
+  LightInShade light_in_shade;
   int images_without = 0;
   int images_since_look = 0;  // around, to the end of a search
   Installments next_look;
@@ -278,7 +268,7 @@ IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallP
         break;  // with more colours there seldom is one
       }
       if (const Answer answer{fit, is_found(fit) ? likeness_of(pixels, fit.circle) : Likeness{}};
-          worth(answer) > worth(best)) {
+          worth(answer) > worth(best) && !is_too_dark(pixels, answer.likeness)) {
         best = answer;
       }
       if (is_found(fit) || fit.around > parameters.ball.max_around) break;  // more colours would be more around it
@@ -289,7 +279,11 @@ IntegratedTracker::State::Answer IntegratedTracker::State::best_of_windows(BallP
 
 void IntegratedTracker::State::remember(const Answer& answer) {
   const Circle& now = answer.fit.circle;
-  if (located && images_without == 0) {
+  const bool is_followed = located && images_without == 0;
+  if (is_followed && is_found(answer.fit) && places != nullptr && places->is_shaded(now, parameters.ball.diameter_m)) {
+    light_in_shade.add(gain_of(light_of(answer.likeness)));
+  }
+  if (is_followed) {
     motion_x_px = kInertia * (now.x_px - circle.x_px);
     motion_y_px = kInertia * (now.y_px - circle.y_px);
   } else {
@@ -303,71 +297,13 @@ void IntegratedTracker::State::remember(const Answer& answer) {
   images_without = 0;
 }
 
-/// Which histogram fits best what is inside a circle.
-IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_of(const BallPixels& pixels, const Circle& of) {
-  if (places != nullptr && !places->may_be_shaded(of, parameters.ball.diameter_m)) {
-    return likeness_in_the_light(pixels, of);
-  }
-  if (looks_shaded_in_the_light(pixels, of)) return {};
-  const Box core = core_of(of);
-  const auto bright = bright_of(pixels, core, Where::kEverywhere);
-  const auto dark = dark_of(pixels, core, Where::kShaded);
-  if (dark.divergence < bright.divergence) return {dark.divergence, dark.light, true};
-  return {bright.divergence, bright.light, false};
-}
-
-/// Of what stands in the light whatever its ray passes through: nearer to a dark histogram than to every bright one it is something darker than the
-/// ball.
-IntegratedTracker::State::Likeness IntegratedTracker::State::likeness_in_the_light(const BallPixels& pixels,
-                                                                                   const Circle& of) {
-  const Box core = core_of(of);
-  const auto bright = bright_of(pixels, core, Where::kEverywhere);
-  if (dark_of(pixels, core, Where::kEverywhere).divergence < bright.divergence) return {};
-  return {bright.divergence, bright.light, false};
-}
-
-/// Is what lies outside the mask nearer to a dark histogram than to every bright one? Then it is something darker than the ball, however near
-/// to a bright one it comes.
-bool IntegratedTracker::State::looks_shaded_in_the_light(const BallPixels& pixels, const Circle& of) {
-  if (pixels.mask.empty() || shade_share(pixels, of) > kMostShaded) return false;
-  const Box core = core_of(of);
-  return dark_of(pixels, core, Where::kLit).divergence < bright_of(pixels, core, Where::kLit).divergence;
-}
-
-BoxDivergence::Answer IntegratedTracker::State::bright_of(const BallPixels& pixels, const Box& box, Where where) {
-  return divergence_of(pixels, box, where, search.bright_table(), bright_divergence);
-}
-
-BoxDivergence::Answer IntegratedTracker::State::dark_of(const BallPixels& pixels, const Box& box, Where where) {
-  return divergence_of(pixels, box, where, search.dark_table(), dark_divergence);
-}
-
-/// Of those pixels of a box that count; without a mask all do.
-BoxDivergence::Answer IntegratedTracker::State::divergence_of(const BallPixels& pixels, Box box, Where where,
-                                                              const imaging::LabelTable& table,
-                                                              BoxDivergence& divergence) {
-  if (where == Where::kShaded && !pixels.mask.empty()) {
-    // What lies beside the rectangle of all shade is left out; what is lit in it speaks against the ball.
-    const ImagePart shaded = shaded_part(pixels.mask, pixels.image);
-    box = intersection(box, {1.0 * shaded.left, 1.0 * shaded.top, 1.0 * shaded.width, 1.0 * shaded.height});
-    if (box.area() <= 0.0) return {kUnlike, 0};
-  }
-  const ImagePart part = part_around(box, pixels.image);
-  if (!imaging::reduce(cut(pixels.image, part), factor, table, labels)) return {kUnlike, 0};
-  if (where != Where::kEverywhere && !pixels.mask.empty()) {
-    keep_only(where == Where::kLit ? Kept::kLit : Kept::kShaded, pixels.mask, pixels.image, part, labels);
-  }
-  box.x -= part.left;
-  box.y -= part.top;
-  return divergence.of(labels, box);
-}
-
 BallSighting IntegratedTracker::State::look(const ImageView& image, const ShadeMaskView& mask, WorkBudget& budget) {
   BallSighting seen;
   seen.mask_used = can_be_used(mask, image);
   if (!can_be_searched(image, max_width_px, max_height_px)) return seen;
   const BallPixels pixels{image, colors_under(light), seen.mask_used ? mask : ShadeMaskView{}};
   const SizeRange& sizes = usual_sizes;
+  light_in_shade.fade();
   factor = imaging::reduction_for(image.width_px, image.height_px, sizes.min_px);
   Answer answer;
   if (located) {
@@ -407,8 +343,7 @@ void IntegratedTracker::State::describe(const Answer& answer, const BallPixels& 
   seen.agreement = answer.fit.agreement;
   seen.divergence = answer.likeness.divergence;
   seen.dark = answer.likeness.dark;
-  const ColorModel& model = seen.dark ? ball.dark : ball.bright;
-  seen.light = model.lights[static_cast<std::size_t>(answer.likeness.light)];
+  seen.light = light_of(answer.likeness);
   seen.shade_share = shade_share(pixels, circle);
 }
 

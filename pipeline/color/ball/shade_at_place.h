@@ -16,6 +16,9 @@ class ShadeAtPlace {
   /// \param circle  a ball's in the image.
   /// \return whether some of a ball of that diameter may lie in shade where it shows this circle.
   [[nodiscard]] virtual bool may_be_shaded(const Circle& circle, double diameter_m) const = 0;
+
+  /// \return whether all of it lies in shade there.
+  [[nodiscard]] virtual bool is_shaded(const Circle& circle, double diameter_m) const = 0;
 };
 
 }  // namespace cgsr::color
