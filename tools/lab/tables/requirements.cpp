@@ -28,9 +28,9 @@ constexpr std::string_view kLookAlikes =
 constexpr std::string_view kNotSeparated =
     "what comes back half as large, or from another side, is not recognised; of the rest some is not looked at, and "
     "some shows no more evidence than other things do";
-constexpr std::string_view kShadedRays =
-    "where shade is nearer to the ball than its distance is known, it may lie in it, and in shade an orange one would "
-    "look so";
+constexpr std::string_view kBrownLooksOrange =
+    "a brown ball in strong light looks like an orange one in weak light, and like one in shade where it may lie in it "
+    "for all that is known";
 constexpr std::string_view kFaces = "known faces near the threshold are called strangers";
 
 // Units are those of the rows: cm, degrees, px, Minstr (million instructions per image), s, shares.
@@ -235,10 +235,10 @@ constexpr std::array kRequirements{
     NamedRequirement{"shaded-ball", "with the mask", "overlap", at_least(0.85)},
     NamedRequirement{"shaded-ball", "with the mask", "brown tracked", at_most(0.0)},
     NamedRequirement{"homes-5.4.3", "with the mask", "overlap", at_least(0.85)},
-    NamedRequirement{"homes-5.4.3", "with the mask", "false", at_most(0.01), kShadedRays},
+    NamedRequirement{"homes-5.4.3", "with the mask", "false", at_most(0.01), kBrownLooksOrange},
     NamedRequirement{"homes-5.4.3", "with the mask: on the floor, in shadow", "found", at_least(0.8)},
     NamedRequirement{"homes-5.4.3", "with the mask: brown ball", "taken for the orange one", at_most(0.01),
-                     kShadedRays},
+                     kBrownLooksOrange},
     NamedRequirement{"homes-5.4.3", "with the mask minus without", "overlap, off the floor", at_least(0.0)},
     NamedRequirement{"homes-5.4.3", "with the mask minus without", "overlap, in shadow", at_least(0.0)},
     NamedRequirement{"homes-5.4.3", "with the mask minus without", "overlap, lit", at_least(0.0)},
