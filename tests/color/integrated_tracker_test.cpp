@@ -175,22 +175,19 @@ TEST(IntegratedTracker, WhereShadeIsSeenToBeBrightADarkBallInItIsAnother) {
   EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), {}).found) << "where no shade is known";
 }
 
-TEST(IntegratedTracker, WhereItMayLieInTheLightABrightBallSaysNothingOfShade) {
+/// Whether a dark ball is found after the ball was followed in shade, as bright as `factor`, and lost.
+bool is_dark_ball_found_after(double factor, const AllPlaces& places) {
   const test::QuarterMask mask;
-  const AllPlaces perhaps(true, false);
   Bench bench;
-  follow_in_shade(0.9, 15, bench, perhaps);
+  follow_in_shade(factor, 15, bench, places);
   lose_the_ball(bench);
-  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &perhaps).found);
+  return bench.look(with_ball(kInShade, kShade), mask.view(), &places).found;
 }
 
-TEST(IntegratedTracker, WhereShadeIsSeenToBeDarkTheBallIsFoundInItAgain) {
-  const test::QuarterMask mask;
-  const AllPlaces shaded(true);
-  Bench bench;
-  follow_in_shade(kShade, 15, bench);
-  lose_the_ball(bench);
-  EXPECT_TRUE(bench.look(with_ball(kInShade, kShade), mask.view(), &shaded).found);
+TEST(IntegratedTracker, WhatSurelyLiesInShadeAloneSaysHowDarkShadeIs) {
+  EXPECT_FALSE(is_dark_ball_found_after(0.9, AllPlaces(true)));
+  EXPECT_TRUE(is_dark_ball_found_after(0.9, AllPlaces(true, false))) << "it may have lain in the light";
+  EXPECT_TRUE(is_dark_ball_found_after(kShade, AllPlaces(true))) << "the ball itself was as dark";
 }
 
 // What was seen of shade says nothing of a ball that has not been out of view: the lamp may have gone out.

@@ -94,13 +94,19 @@ TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
   EXPECT_TRUE(tracker.shirts().knows(1));
 }
 
-// Faces are looked for in every other image: in between his shirt does not name the person again.
-TEST(PersonTracker, AStrangerStaysOneUntilFacesAreLookedForAgain) {
-  PersonTracker tracker;
+/// Red is person 1's shirt, and a stranger's face was just decided on above it.
+void meet_a_stranger_in_red(PersonTracker& tracker) {
   learn(tracker, 1, kRed);
   const Picture picture = standing(kRed);
   while (!tracker.face_is_due()) tracker.update({picture.view()});
   ASSERT_EQ(tracker.update({picture.view(), face_of(std::nullopt)}).person, kStranger);
+}
+
+// Faces are looked for in every other image: in between his shirt does not name the person again.
+TEST(PersonTracker, AStrangerStaysOneUntilFacesAreLookedForAgain) {
+  PersonTracker tracker;
+  const Picture picture = standing(kRed);
+  meet_a_stranger_in_red(tracker);
   ASSERT_FALSE(tracker.face_is_due());
   const auto between = tracker.update({picture.view()});
   EXPECT_EQ(between.person, kStranger);
@@ -112,10 +118,7 @@ TEST(PersonTracker, AStrangerStaysOneUntilFacesAreLookedForAgain) {
 
 TEST(PersonTracker, AStrangerBesideThePersonSaysNothingOfHisShirt) {
   PersonTracker tracker;
-  learn(tracker, 1, kRed);
-  const Picture picture = standing(kRed);
-  while (!tracker.face_is_due()) tracker.update({picture.view()});
-  ASSERT_EQ(tracker.update({picture.view(), face_of(std::nullopt)}).person, kStranger);
+  meet_a_stranger_in_red(tracker);
   Picture elsewhere;
   elsewhere.fill({10, 80, 80, 100}, kRed);
   EXPECT_EQ(tracker.update({elsewhere.view()}).person, 1);
