@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <numbers>
 
-#include "pipeline/localization/work.h"
 
 namespace cgsr::global_localization {
 namespace {
@@ -13,7 +14,7 @@ using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCell = 2.0 * std::numbers::pi / Panorama::kAzimuths;
-constexpr int kCompareUnits = 2;  // a place with the panorama seen: 1.5 million instructions
+constexpr int kComparedAtOnce = 16;  // places with the panorama seen, for a unit
 constexpr double kNeighbours =
     1.5;                        // steps of the grid: places no farther apart, seen from one heading, are one candidate
 constexpr double kAbout = 1.6;  // likewise: the neighbours along the axes and at the corners
@@ -71,7 +72,7 @@ std::vector<Eigen::Vector2d> grid_of_places(const world::Map& map, double spacin
   return places;
 }
 
-CandidateSearch::CandidateSearch(const PlaceIndex& index, const GlobalLocalizerParameters& parameters)
+CandidateSearch::CandidateSearch(PlaceIndex& index, const GlobalLocalizerParameters& parameters)
     : index_(&index), parameters_(parameters) {
   candidates_.reserve(static_cast<std::size_t>(parameters.max_candidates) + 1);
 }
@@ -79,17 +80,26 @@ CandidateSearch::CandidateSearch(const PlaceIndex& index, const GlobalLocalizerP
 void CandidateSearch::restart() {
   candidates_.clear();
   next_place_ = 0;
+  compared_ = 0;
   sharpened_ = 0;
   about_ = About{};
 }
 
 bool CandidateSearch::go_on(const Panorama& seen, WorkBudget& budget) {
-  while (next_place_ < index_->size()) {
-    if (!localization::granted(budget, kCompareUnits)) return false;
-    propose(next_place_, index_->panorama(next_place_).compare(seen));
-    ++next_place_;
+  for (; next_place_ < index_->size(); ++next_place_) {
+    if (!compare_next(seen, budget)) return false;
   }
   return sharpen(seen, budget);
+}
+
+// In a large home the turn ends before every place is in the index.
+bool CandidateSearch::compare_next(const Panorama& seen, WorkBudget& budget) {
+  if (next_place_ < index_->apart() && !index_->build(next_place_, budget)) return false;
+  if (!index_->holds(next_place_)) return true;
+  if (compared_ == 0 && !budget.grant()) return false;
+  compared_ = (compared_ + 1) % kComparedAtOnce;
+  propose(next_place_, index_->panorama(next_place_).compare(seen));
+  return true;
 }
 
 void CandidateSearch::propose(std::size_t place, const Panorama::Likeness& likeness) {
@@ -104,6 +114,7 @@ void CandidateSearch::propose(std::size_t place, const Panorama::Likeness& liken
     candidate.X_WR =
         geometry::pose_on_floor(index_->place_m(place).x(), index_->place_m(place).y(), refined(likeness, i));
     candidate.likeness = here;
+    candidate.X_WR_alike = candidate.X_WR;
     // Neighbours on the grid are one candidate.
     const double near_m = kNeighbours * parameters_.spacing_m;
     const auto is_same = [&](const Candidate& other) {
@@ -126,18 +137,43 @@ bool CandidateSearch::sharpen(const Panorama& seen, WorkBudget& budget) {
     for (; about_.next < index_->size(); ++about_.next) {
       const Eigen::Vector2d off = index_->place_m(about_.next) - best;
       if (off.cwiseAbs().maxCoeff() > kAbout * parameters_.spacing_m) continue;
-      if (!localization::granted(budget, kCompareUnits)) return false;
+      if (!index_->build(about_.next, budget) || !budget.grant()) return false;
       const Panorama::Likeness likeness = index_->panorama(about_.next).compare(seen);
       const std::size_t most = most_alike_about(likeness, heading);
       const double above = std::max(0.0F, likeness[most] - candidate.likeness + kHardlyAlike);
       const double turn = std::remainder(refined(likeness, most) - heading, 2.0 * std::numbers::pi);
       about_.weights += above * above;
+      if (likeness[most] > about_.likeness) {
+        about_.likeness = likeness[most];
+        about_.X_WR = geometry::pose_on_floor(index_->place_m(about_.next).x(), index_->place_m(about_.next).y(),
+                                              heading + turn);
+      }
       about_.sum += above * above * Eigen::Vector3d(off.x(), off.y(), turn);
     }
     const Eigen::Vector3d shift = about_.sum / about_.weights;
+    candidate.likeness = about_.likeness;
+    candidate.X_WR_alike = about_.X_WR;
     candidate.X_WR = geometry::pose_on_floor(best.x() + shift.x(), best.y() + shift.y(), heading + shift.z());
   }
+  leave_out_doubles();
   return true;
+}
+
+// What is most alike about one of them is next to what is about a better one, or the same.
+void CandidateSearch::leave_out_doubles() {
+  const double near_m = kNeighbours * parameters_.spacing_m;
+  std::ranges::sort(candidates_, std::greater<>(), &Candidate::likeness);
+  for (std::size_t i = 1; i < candidates_.size();) {
+    const bool is_double = std::any_of(
+        candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(i), [&](const Candidate& better) {
+          return are_near(better.X_WR_alike, candidates_[i].X_WR_alike, near_m, parameters_.same_deg * kDegree);
+        });
+    if (is_double) {
+      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
 }
 
 }  // namespace cgsr::global_localization

@@ -28,7 +28,8 @@ struct CorrectedView {
 struct Candidate {
   geometry::Pose X_WR =
       geometry::Pose::Identity();  ///< where the robot was in the first image; tried: by the localizer.
-  float likeness = 0.0F;           ///< of the panoramas, at most 1.
+  float likeness = 0.0F;           ///< of the panoramas, at most 1: the greatest of those about it,
+  geometry::Pose X_WR_alike = geometry::Pose::Identity();  ///< ... and where on the grid that is.
   bool tried = false;
   int looked_at = 0;                          ///< images of the turn that the localizer was shown.
   int corrected = 0;                          ///< of these, the ones that corrected it.
@@ -47,11 +48,12 @@ std::vector<Eigen::Vector2d> grid_of_places(const world::Map& map, double spacin
 class CandidateSearch {
  public:
   /// \param index  outlives it.
-  CandidateSearch(const PlaceIndex& index, const GlobalLocalizerParameters& parameters);
+  CandidateSearch(PlaceIndex& index, const GlobalLocalizerParameters& parameters);
 
   void restart();
 
-  /// Compares, as far as the budget goes: two units for each place. \return whether the candidates are known.
+  /// Compares, as far as the budget goes, what the index holds: those of its places that are apart, which are built before, and whatever else there is. The
+  /// neighbours of the most alike ones are built if they aren't. Some 16 places a unit. \return whether the candidates are known.
   bool go_on(const Panorama& seen, WorkBudget& budget);
 
   /// The most alike first.
@@ -64,15 +66,20 @@ class CandidateSearch {
     std::size_t next = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their offsets and turns, metres and radians, by weight.
     double weights = 0.0;
+    float likeness = 0.0F;  ///< of the most alike one,
+    geometry::Pose X_WR = geometry::Pose::Identity();  ///< ... and where that is.
   };
 
   void propose(std::size_t place, const Panorama::Likeness& likeness);
+  bool compare_next(const Panorama& seen, WorkBudget& budget);
   bool sharpen(const Panorama& seen, WorkBudget& budget);
+  void leave_out_doubles();
 
-  const PlaceIndex* index_;
+  PlaceIndex* index_;
   GlobalLocalizerParameters parameters_;
   std::vector<Candidate> candidates_;
   std::size_t next_place_ = 0;
+  int compared_ = 0;  ///< places, of this unit.
   std::size_t sharpened_ = 0;  ///< candidates.
   About about_;                ///< the next one.
 };

@@ -49,7 +49,8 @@ GlobalLocalizer::GlobalLocalizer(const world::Map& map, const geometry::Camera& 
       tracker_(localizer, X_RC, tracking),
       settling_(localizer, X_RC, tracking, parameters),
       turn_(camera, X_RC, parameters.max_drift_m),
-      index_(map, localization::working_camera(camera).without_distortion(), X_RC, std::move(places_m)),
+      index_(map, localization::working_camera(camera).without_distortion(), X_RC, std::move(places_m),
+             parameters.spacing_m),
       search_(index_, parameters),
       fit_(localizer, X_RC, parameters) {}
 
@@ -82,7 +83,7 @@ Phase GlobalLocalizer::update(const ImageView& image, const Motion& motion, Work
       turn_.close();
     } else if (!std::exchange(gathered_, true)) {
       turn_.gather(seen_);
-    } else if (index_.build(budget) && search_.go_on(seen_, budget)) {
+    } else if (search_.go_on(seen_, budget)) {
       phase_ = search_.candidates().empty() ? Phase::kNotFound : Phase::kTrying;
       choose_order();
     }
@@ -100,10 +101,23 @@ bool GlobalLocalizer::looks_at(const Motion& motion) const {
 }
 
 bool GlobalLocalizer::worth_trying(const Candidate& candidate) const {
-  const bool any = std::ranges::any_of(
-      search_.candidates(), [&](const Candidate& c) { return c.tried && c.corrected >= parameters_.min_corrected; });
-  return !any || static_cast<double>(candidate.likeness) >=
-                     parameters_.min_likeness_share * static_cast<double>(search_.candidates().front().likeness);
+  return is_nearly_as_alike(candidate) || !any_is_corrected();
+}
+
+bool GlobalLocalizer::any_is_corrected() const {
+  return std::ranges::any_of(search_.candidates(), [this](const Candidate& c) { return is_corrected(c); });
+}
+
+bool GlobalLocalizer::is_nearly_as_alike(const Candidate& candidate) const {
+  return static_cast<double>(candidate.likeness) >=
+         parameters_.min_likeness_share * static_cast<double>(search_.candidates().front().likeness);
+}
+
+// In enough images. The panorama speaks for the most alike one where it speaks for no other.
+bool GlobalLocalizer::is_corrected(const Candidate& candidate) const {
+  const auto candidates = search_.candidates();
+  const bool alone = &candidate == &candidates.front() && (candidates.size() == 1 || !is_nearly_as_alike(candidates[1]));
+  return candidate.tried && candidate.corrected >= (alone ? parameters_.min_corrected_alone : parameters_.min_corrected);
 }
 
 // From the image that shows most around to the last one, the shorter way, and on; the last one stands for the one that it looks like. A look at a bare wall
@@ -129,10 +143,14 @@ void GlobalLocalizer::choose_order() {
   }
 }
 
+int GlobalLocalizer::most_failed() const {
+  if (trial_ == 0) return parameters_.max_failed;
+  return any_is_corrected() ? parameters_.max_failed_rival : parameters_.max_failed_fitted;
+}
+
 bool GlobalLocalizer::goes_on(const Candidate& candidate) const {
   if (candidate.looked_at >= looks_) return false;
-  const int most_failed = trial_ == 0 ? parameters_.max_failed : parameters_.max_failed_fitted;
-  if (candidate.corrected == 0) return candidate.looked_at < most_failed;
+  if (candidate.corrected == 0) return candidate.looked_at < most_failed();
   return candidate.corrected < parameters_.enough_corrected || candidate.looked_at < looks_to_last_;
 }
 
@@ -222,7 +240,7 @@ Phase GlobalLocalizer::verdict() {
   for (const Candidate& c : search_.candidates()) {
     if (c.tried && (best == nullptr || better(c, *best))) best = &c;
   }
-  if (best == nullptr || best->corrected < parameters_.min_corrected) return Phase::kNotFound;
+  if (best == nullptr || !is_corrected(*best)) return Phase::kNotFound;
   for (const Candidate& c : search_.candidates()) {
     if (!c.tried || are_near(c.X_WR, best->X_WR, parameters_.same_m, parameters_.same_deg * kDegree)) continue;
     if (share(c) > parameters_.max_rival_share * share(*best)) return Phase::kAmbiguous;

@@ -54,10 +54,12 @@ class GlobalLocalizer {
 
   [[nodiscard]] Phase phase() const { return phase_; }
   /// While true the robot should turn on the spot, at most 45 degrees a second; either way round. Once it has turned once and up to a sixth more it should
-  /// stand; then it turns on to a view that confirms the pose, and stands again.
+  /// stand; then it turns to a view that confirms the pose, and stands again.
   [[nodiscard]] bool wants_turn() const {
     return phase_ == Phase::kTurning || (phase_ == Phase::kSettling && settling_.wants_turn());
   }
+  /// With wants_turn(): back would be the shorter way to that view. A robot that turns on finds it too.
+  [[nodiscard]] bool turns_back() const { return phase_ == Phase::kSettling && settling_.turns_back(); }
   /// The camera's pose at the last image; with kFound.
   [[nodiscard]] const localization::TrackedPose& found() const { return settling_.now(); }
   /// The most alike first; from kTrying on.
@@ -66,6 +68,10 @@ class GlobalLocalizer {
  private:
   bool try_candidates(WorkBudget& budget, const std::uint8_t* mask);
   [[nodiscard]] bool worth_trying(const Candidate& candidate) const;
+  [[nodiscard]] bool is_nearly_as_alike(const Candidate& candidate) const;
+  [[nodiscard]] bool is_corrected(const Candidate& candidate) const;
+  [[nodiscard]] bool any_is_corrected() const;
+  [[nodiscard]] int most_failed() const;
   void choose_order();
   bool fit(const Candidate& candidate, WorkBudget& budget);
   [[nodiscard]] localization::Prior prior_of_look(const Candidate& candidate) const;

@@ -25,6 +25,34 @@ struct Between {
   double share;
 };
 
+template <int kCount>
+using RowOf = Eigen::Matrix<float, kCount, 1>;
+
+/// The harmonics of a row of azimuths: one in each row of these.
+struct Waves {
+  static constexpr int kHarmonics = Panorama::kAzimuths / 2;
+  Eigen::Matrix<float, kHarmonics, Panorama::kAzimuths> cosines, sines;
+  /// With which the product of two rows' harmonics is that of the rows: the root of 2 / N, of 1 / N for the last one, which has no sine.
+  RowOf<kHarmonics> scale = RowOf<kHarmonics>::Constant(std::sqrt(2.0F / Panorama::kAzimuths));
+
+  static const Waves& get() {
+    static const Waves waves;
+    return waves;
+  }
+
+ private:
+  Waves() {
+    scale(kHarmonics - 1) *= std::sqrt(0.5F);
+    for (int harmonic = 0; harmonic < kHarmonics; ++harmonic) {
+      for (int cell = 0; cell < Panorama::kAzimuths; ++cell) {
+        const double angle = (harmonic + 1) * cell * kCell;
+        cosines(harmonic, cell) = static_cast<float>(std::cos(angle));
+        sines(harmonic, cell) = static_cast<float>(std::sin(angle));
+      }
+    }
+  }
+};
+
 }  // namespace
 
 void Panorama::clear() {
@@ -118,25 +146,46 @@ void Panorama::finish() {
   if (squares <= 0.0) return;
   const auto scale = static_cast<float>(1.0 / std::sqrt(squares));
   for (float& cell : cells_) cell *= scale;
+  take_harmonics();
+}
+
+void Panorama::take_harmonics() {
+  const Waves& waves = Waves::get();
+  for (int course = 0; course < kCourses; ++course) {
+    for (int elevation = 0; elevation < kElevations; ++elevation) {
+      if (empty_[static_cast<std::size_t>(course * kElevations + elevation)]) continue;
+      Eigen::Map<RowOf<kAzimuths>> cells(row(course, elevation));
+      RowOf<kHarmonics> cosines = RowOf<kHarmonics>::Zero();
+      RowOf<kHarmonics> sines = RowOf<kHarmonics>::Zero();
+      for (int a = 0; a < kAzimuths; ++a) {
+        cosines += cells(a) * waves.cosines.col(a);
+        sines += cells(a) * waves.sines.col(a);
+      }
+      cells << waves.scale.cwiseProduct(cosines), waves.scale.cwiseProduct(sines);
+    }
+  }
 }
 
 Panorama::Likeness Panorama::compare(const Panorama& other) const {
-  Likeness likeness{};
-  std::array<float, static_cast<std::size_t>(2 * kAzimuths)> twice;
+  RowOf<kHarmonics> cosines = RowOf<kHarmonics>::Zero();
+  RowOf<kHarmonics> sines = RowOf<kHarmonics>::Zero();
   for (int course = 0; course < kCourses; ++course) {
     for (int elevation = 0; elevation < kElevations; ++elevation) {
       const auto index = static_cast<std::size_t>(course * kElevations + elevation);
       if (empty_[index] || other.empty_[index]) continue;
-      const float* const mine = row(course, elevation);
-      const float* const theirs = other.row(course, elevation);
-      std::copy_n(mine, kAzimuths, twice.begin());
-      std::copy_n(mine, kAzimuths, twice.begin() + kAzimuths);
-      for (int a = 0; a < kAzimuths; ++a) {
-        const float value = theirs[a];
-        const float* const from = twice.data() + a;
-        for (std::size_t turn = 0; turn < kAzimuths; ++turn) likeness[turn] += value * from[turn];
-      }
+      const Eigen::Map<const RowOf<kHarmonics>> my_cosines(row(course, elevation));
+      const Eigen::Map<const RowOf<kHarmonics>> my_sines(row(course, elevation) + kHarmonics);
+      const Eigen::Map<const RowOf<kHarmonics>> their_cosines(other.row(course, elevation));
+      const Eigen::Map<const RowOf<kHarmonics>> their_sines(other.row(course, elevation) + kHarmonics);
+      cosines.array() += my_cosines.array() * their_cosines.array() + my_sines.array() * their_sines.array();
+      sines.array() += my_sines.array() * their_cosines.array() - my_cosines.array() * their_sines.array();
     }
+  }
+  const Waves& waves = Waves::get();
+  Likeness likeness;
+  for (int turn = 0; turn < kAzimuths; ++turn) {
+    likeness[static_cast<std::size_t>(turn)] =
+        waves.cosines.col(turn).dot(cosines) + waves.sines.col(turn).dot(sines);
   }
   return likeness;
 }

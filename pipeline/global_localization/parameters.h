@@ -26,13 +26,15 @@ struct GlobalLocalizerParameters {
   double turn_sigma_deg = 1.5;       ///< of the heading then, the turn being closed.
   double min_likeness_share =
       0.85;                  ///< of the best candidate's: others are tried too, although the best one was right.
-  int min_corrected = 4;     ///< images of the turn in which the localizer must correct a candidate's pose.
+  int min_corrected = 4;  ///< images of the turn in which the localizer must correct a candidate's pose,
+  int min_corrected_alone = 3;  ///< ... where no other one is nearly as alike.
   int enough_corrected = 5;  ///< with so many the trial ends, once the last image was among those that were looked at.
   /// Of the edges in the richest image of the turn; poorer images are left out, but six are looked at.
   double min_edges_share = 0.4;
   double max_rival_share = 0.5;  ///< of the best one's share of corrected images, what another place may have.
   double same_m = 0.3;           ///< tried candidates that come this near to each other are one place.
-  int max_failed_fitted = 3;     ///< a candidate is given up when none of so many images corrected its fit;
+  int max_failed_fitted = 3;     ///< a candidate is given up when none of so many images corrected its fit,
+  int max_failed_rival = 2;      ///< ... once a more alike one was corrected in enough of them, when none of so many;
   int max_failed =
       5;  ///< ... the most alike one is looked for about its panorama's place before, up to so many images.
   double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,

@@ -11,8 +11,7 @@
 namespace cgsr::global_localization {
 namespace {
 
-constexpr int kSides = 3;
-constexpr double kSide = 2.0 * std::numbers::pi / kSides;
+constexpr double kSide = 2.0 * std::numbers::pi / 3.0;
 constexpr double kFocalPerWidth = 0.277;  // of a camera that sees 122 degrees: a third of the way round, and a little
 constexpr int kSideUnits = 4;             // a look to one side: 2 to 4 million instructions
 constexpr std::size_t kMostPieces = 3000;
@@ -35,6 +34,22 @@ geometry::Camera wide_camera() {
   camera.cx_px = 0.5 * (camera.width_px - 1);
   camera.cy_px = 0.5 * (camera.height_px - 1);
   return camera;
+}
+
+constexpr double kApart = 1.2;  // steps of the grid: more than to the next one, less than to the one at a corner
+
+// Places of which none is next to another one, before the others. \return how many.
+std::size_t take_apart(std::vector<Eigen::Vector2d>& places_m, double spacing_m) {
+  std::vector<Eigen::Vector2d> apart;
+  std::vector<Eigen::Vector2d> between;
+  for (const Eigen::Vector2d& place : places_m) {
+    const bool is_next_to_one = std::ranges::any_of(
+        apart, [&](const Eigen::Vector2d& other) { return (other - place).norm() < kApart * spacing_m; });
+    (is_next_to_one ? between : apart).push_back(place);
+  }
+  places_m = apart;
+  places_m.insert(places_m.end(), between.begin(), between.end());
+  return apart.size();
 }
 
 }  // namespace
@@ -60,14 +75,16 @@ Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, doubl
 }
 
 PlaceIndex::PlaceIndex(const world::Map& map, const geometry::Camera& camera, const geometry::Pose& X_RC,
-                       std::vector<Eigen::Vector2d> places_m)
+                       std::vector<Eigen::Vector2d> places_m, double spacing_m)
     : X_RC_(X_RC),
       wide_(wide_camera()),
       sector_(seen_by(camera, X_RC, std::numbers::pi / kKeyframes)),
       raster_(std::make_unique<render::DepthRaster>(map, raster_parameters())),
       view_(map, kMostPieces),
       places_m_(std::move(places_m)),
-      panoramas_(places_m_.size()) {
+      apart_(take_apart(places_m_, spacing_m)),
+      panoramas_(places_m_.size()),
+      sides_(places_m_.size(), 0) {
   visible_.reserve(kMostPieces);
   sector_.half_width = 0.5 * kSide;
 }
@@ -87,14 +104,18 @@ void PlaceIndex::look(std::size_t place, int side) {
   }
 }
 
-bool PlaceIndex::build(WorkBudget& budget) {
-  while (next_ < places_m_.size()) {
+bool PlaceIndex::build(std::size_t place, WorkBudget& budget) {
+  for (int& side = sides_[place]; side < kSides; ++side) {
     if (!localization::granted(budget, kSideUnits)) return false;
-    look(next_, next_side_);
-    if (++next_side_ < kSides) continue;
-    panoramas_[next_].finish();
-    next_side_ = 0;
-    ++next_;
+    look(place, side);
+    if (side + 1 == kSides) panoramas_[place].finish();
+  }
+  return true;
+}
+
+bool PlaceIndex::build(WorkBudget& budget) {
+  for (; next_ < places_m_.size(); ++next_) {
+    if (!build(next_, budget)) return false;
   }
   return true;
 }

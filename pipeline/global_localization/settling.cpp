@@ -38,6 +38,7 @@ void Settling::begin(const Candidate& candidate) {
   }
   view_ = std::nullopt;
   wants_turn_ = false;
+  turns_back_ = false;
   images_ = 0;
   standing_images_ = 0;
   begun_rad_ = std::nullopt;
@@ -53,6 +54,14 @@ std::optional<std::size_t> Settling::nearest_view(const Turn& turn, double withi
     within_rad = apart_rad;
   }
   return nearest;
+}
+
+// To the nearest view that is worth a look, the shorter way.
+void Settling::turn_on(const Turn& turn) {
+  wants_turn_ = true;
+  const auto view = nearest_view(turn, std::numbers::pi);
+  const double to_it_rad = view ? wrapped(turn.keyframes()[*view].turned_rad - turn.turned_rad()) : 0.0;
+  turns_back_ = to_it_rad * turn.keyframes().back().turned_rad < 0.0;
 }
 
 std::optional<std::size_t> Settling::faced_view(const Turn& turn) {
@@ -104,20 +113,23 @@ std::optional<bool> Settling::update(const Turn& turn, const ImageView& image, c
   if (!view_) {
     if (const auto view = faced_view(turn)) face(*view, turn);
   }
-  wants_turn_ = !view_;
+  wants_turn_ = false;
   if (view_ && !looking_) looking_ = begins_to_look(turn);
   turned_before_rad_ = turn.turned_rad();
-  if (!view_) return std::nullopt;
+  if (!view_) {
+    turn_on(turn);
+    return std::nullopt;
+  }
   const geometry::Pose X_FR = turn.X_FR();
   tracker_.moved(X_FR_before_.inverse() * X_FR);
   tracker_.pitched(motion.pitch_rad, motion.axle_height_m);
   X_FR_before_ = X_FR;
   if (!looking_) return std::nullopt;
   tracker_.see(image, budget, mask);
-  return judge();
+  return judge(turn);
 }
 
-std::optional<bool> Settling::judge() {
+std::optional<bool> Settling::judge(const Turn& turn) {
   const localization::Correction& correction = now().correction;
   if (localizer_->searching() || correction.reason == localization::Reason::kNoBudget) return std::nullopt;
   if (correction.corrected && is_sure()) return true;
@@ -125,7 +137,7 @@ std::optional<bool> Settling::judge() {
   views_[*view_].matches = 0;
   view_ = std::nullopt;
   looking_ = false;
-  wants_turn_ = true;
+  turn_on(turn);
   const bool any = std::ranges::any_of(views_, [](const CorrectedView& view) { return view.matches > 0; });
   return any ? std::nullopt : std::optional(false);
 }

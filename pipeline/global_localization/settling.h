@@ -36,16 +36,19 @@ class Settling {
                              const std::uint8_t* mask);
 
   [[nodiscard]] bool wants_turn() const { return wants_turn_; }
+  /// With wants_turn(): the nearest view lies the other way round than the turn went.
+  [[nodiscard]] bool turns_back() const { return turns_back_; }
   /// The camera at the last image.
   [[nodiscard]] const localization::TrackedPose& now() const { return tracker_.now(); }
 
  private:
   [[nodiscard]] std::optional<std::size_t> nearest_view(const Turn& turn, double within_rad) const;
   [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn);
+  void turn_on(const Turn& turn);
   void face(std::size_t view, const Turn& turn);
   [[nodiscard]] bool stands(const Turn& turn) const;
   [[nodiscard]] bool begins_to_look(const Turn& turn);
-  [[nodiscard]] std::optional<bool> judge();
+  [[nodiscard]] std::optional<bool> judge(const Turn& turn);
   [[nodiscard]] bool is_sure() const;
 
   localization::Localizer* localizer_;
@@ -54,6 +57,7 @@ class Settling {
   std::array<CorrectedView, kViews> views_{};  ///< of the turn; without matches where they are not worth a look.
   std::optional<std::size_t> view_;            ///< that the robot faces; nothing: it turns on.
   bool wants_turn_ = false;
+  bool turns_back_ = false;
   bool looking_ = false;
   int braking_images_ = 0;
   int unsure_images_ = 0;  ///< of this look, that corrected the pose and left it too uncertain.

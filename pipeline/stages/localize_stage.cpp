@@ -77,7 +77,8 @@ PoseEstimate LocalizeStage::update(WorkBudget& budget, const ImageView& image, c
 void LocalizeStage::tell_search(PoseEstimate& pose) const {
   pose.search = whole_map_->phase();
   pose.anew = anew_;
-  pose.turn_radps = X_OR_ && whole_map_->wants_turn() ? seek_turn_radps_ : 0.0;
+  const double turn_radps = whole_map_->turns_back() ? -seek_turn_radps_ : seek_turn_radps_;
+  pose.turn_radps = X_OR_ && whole_map_->wants_turn() ? turn_radps : 0.0;
 }
 
 PoseEstimate LocalizeStage::seek_pose(WorkBudget& budget, const ImageView& image) {

@@ -47,15 +47,15 @@ world::Map room_that_is_twice_the_same() {
 
 class PutDownAnywhere : public ::testing::Test {
  protected:
-  explicit PutDownAnywhere(world::Map map = small_room())
+  explicit PutDownAnywhere(world::Map map = small_room(), const GlobalLocalizerParameters& parameters = {})
       : map_(std::move(map)),
         camera_(geometry::Camera{}.scaled_to(320, 240)),
         X_RC_(in_small_room(0.0, 0.0, 0.0)),
         localizer_(map_, camera_, {}) {
     const auto may_stand = [](double x_m, double y_m) { return x_m > 0.4 && x_m < 3.0 && y_m > 0.4 && y_m < 3.6; };
-    auto places = grid_of_places(map_, GlobalLocalizerParameters{}.spacing_m, may_stand);
+    auto places = grid_of_places(map_, parameters.spacing_m, may_stand);
     searcher_ = std::make_unique<GlobalLocalizer>(map_, camera_, X_RC_, std::move(places), localizer_,
-                                                  localization::PoseTrackerParameters{}, GlobalLocalizerParameters{});
+                                                  localization::PoseTrackerParameters{}, parameters);
   }
 
   /// An image from where the robot is, and what its odometry, which began elsewhere, says of that.
@@ -84,7 +84,8 @@ class PutDownAnywhere : public ::testing::Test {
     while (searcher_->phase() < Phase::kFound && images_ < 2000) {
       X_WR_ = X_W0 * geometry::pose_on_floor(0.0, 0.0, turned);
       see(X_WR_, budget);
-      if (searcher_->wants_turn()) turned += way_round_ * kTurn;
+      const double step = searcher_->turns_back() && turns_back_if_told_ ? -kTurn : kTurn;
+      if (searcher_->wants_turn()) turned += way_round_ * step;
     }
     return searcher_->phase();
   }
@@ -110,6 +111,7 @@ class PutDownAnywhere : public ::testing::Test {
   double odometry_turns_ = 1.0;   ///< of what the robot turns.
   double lean_rad_ = 0.0;         ///< in the first image; less in those that follow.
   int way_round_ = 1;             ///< -1: to the right.
+  bool turns_back_if_told_ = true;
   Pose X_WC_ = Pose::Identity();  ///< where the camera is.
   int images_ = 0;
   std::optional<Picture> picture_;  ///< the last that was looked at.
@@ -157,6 +159,24 @@ TEST_F(PutDownAnywhere, TurnsOnBeforeABareWall) {
   odometry_turns_ = 1.06;
   ASSERT_EQ(turn(geometry::pose_on_floor(1.5, 0.8, 3.0), whole_), Phase::kFound);
   expect_right();
+}
+
+// The nearest view that tells where it is may be one that it just saw.
+TEST_F(PutDownAnywhere, TurnsBackWhereThatIsShorter) {
+  for (const auto& [way_round, y_m, heading] : {std::tuple{1, 0.8, 3.0}, {-1, 1.7, 5.0}}) {
+    way_round_ = way_round;
+    int images = 0;
+    for (const bool back : {false, true}) {
+      turns_back_if_told_ = back;
+      searcher_->restart();
+      images_ = 0;
+      turned_ = 0.0;
+      ASSERT_EQ(turn(geometry::pose_on_floor(1.5, y_m, heading), whole_), Phase::kFound) << way_round;
+      expect_right();
+      if (!back) images = images_;
+    }
+    EXPECT_LT(images_, images) << way_round;
+  }
 }
 
 // What it saw to the left of where it began is not seen again to the right.
@@ -252,6 +272,34 @@ TEST_F(PutDownInATwin, SaysThatThereAreTwoPlaces) {
   int corrected = 0;
   for (const Candidate& candidate : searcher_->candidates()) corrected += candidate.corrected > 3 ? 1 : 0;
   EXPECT_EQ(corrected, 2);
+}
+
+GlobalLocalizerParameters corrected_in_images(int images) {
+  GlobalLocalizerParameters parameters;
+  parameters.min_corrected = images;
+  return parameters;
+}
+
+/// More images than there are would have to correct its pose.
+class HardlyCorrected : public PutDownAnywhere {
+ protected:
+  explicit HardlyCorrected(world::Map map = small_room())
+      : PutDownAnywhere(std::move(map), corrected_in_images(kViews + 1)) {}
+};
+
+class HardlyCorrectedInATwin : public HardlyCorrected {
+ protected:
+  HardlyCorrectedInATwin() : HardlyCorrected(room_that_is_twice_the_same()) {}
+};
+
+// Fewer will do where no other place is nearly as alike.
+TEST_F(HardlyCorrected, IsFoundWhereItsPanoramaStandsAlone) {
+  ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound);
+  expect_right();
+}
+
+TEST_F(HardlyCorrectedInATwin, IsNot) {
+  EXPECT_EQ(turn(geometry::pose_on_floor(1.5, 1.4, 0.3), whole_), Phase::kNotFound);
 }
 
 }  // namespace

@@ -56,6 +56,33 @@ TEST(Panorama, FindsTheTurnOfACopy) {
   }
 }
 
+// All turns are compared at once, by their harmonics: each as if that turn alone had been made.
+TEST(Panorama, ComparesEveryTurnAsIfItHadBeenMade) {
+  const Panorama seen = panorama_of(room(2), 0.0);
+  const Panorama::Likeness likeness = panorama_of(room(1), 0.0).compare(seen);
+  for (int cells = 0; cells < Panorama::kAzimuths; ++cells) {
+    const Panorama turned = panorama_of(room(1), -cells * 2.0 * kPi / Panorama::kAzimuths);
+    EXPECT_NEAR(likeness[static_cast<std::size_t>(cells)], turned.compare(seen)[0], 0.01F) << cells;
+  }
+}
+
+// Two posts of one height: how alike they are is how their cells overlap, none of which the other one shares two cells on.
+TEST(Panorama, IsAlikeAsFarAsCellsOverlap) {
+  const auto post_at = [](double cells) {
+    const double azimuth = (cells + 0.5) * 2.0 * kPi / Panorama::kAzimuths;
+    const Eigen::Vector3d foot(2.0 * std::cos(azimuth), 2.0 * std::sin(azimuth), -0.2);
+    return panorama_of({{foot, foot + Eigen::Vector3d(0.0, 0.0, 0.4)}}, 0.0);
+  };
+  // Each post covers three cells, a quarter, a half, a quarter; less the mean of the row, 1 / 120.
+  const auto expected = [](double product) { return (product - 1.0 / 120.0) / (0.375 - 1.0 / 120.0); };
+  const Panorama::Likeness likeness = post_at(10).compare(post_at(10));
+  EXPECT_NEAR(likeness[0], 1.0, 1e-3);
+  EXPECT_NEAR(likeness[1], expected(0.25), 1e-3);
+  EXPECT_NEAR(likeness[2], expected(0.0625), 1e-3);
+  EXPECT_NEAR(likeness[3], expected(0.0), 1e-3);
+  EXPECT_NEAR(post_at(12).compare(post_at(10))[2], 1.0, 1e-3);
+}
+
 TEST(Panorama, OfAnotherRoomIsLessAlike) {
   const Panorama seen = panorama_of(room(1), 0.7);
   const auto most_alike = [&](std::uint32_t seed) {

@@ -191,7 +191,8 @@ class Trials {
     Photograph photo;
     std::uint64_t photos = 0;
     for (int image = 0; image * kImage_s < kLongest_s; ++image) {
-      if (image > 0) turn.step(searcher.wants_turn() ? kTurn_rad_s * kImage_s : 0.0);
+      const double angle_rad = searcher.wants_turn() ? kTurn_rad_s * kImage_s : 0.0;
+      if (image > 0) turn.step(searcher.turns_back() ? -angle_rad : angle_rad);
       const geometry::Pose X_WC = turn.X_WR() * place.X_RC();
       const Motion motion = turn.motion();
       if (searcher.looks_at(motion)) photo = place.photograph(X_WC, seed, photos++);
