@@ -6,7 +6,6 @@
 #include <functional>
 #include <numbers>
 
-
 namespace cgsr::global_localization {
 namespace {
 
@@ -14,7 +13,8 @@ using geometry::Pose;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kCell = 2.0 * std::numbers::pi / Panorama::kAzimuths;
-constexpr int kComparedAtOnce = 16;  // places with the panorama seen, for a unit
+constexpr int kComparedAtOnce = 16;               // places with the panorama seen, for a unit
+constexpr std::size_t kProposedPerCandidate = 3;  // one place of the home may be proposed by places on all its sides
 constexpr double kNeighbours =
     1.5;                        // steps of the grid: places no farther apart, seen from one heading, are one candidate
 constexpr double kAbout = 1.6;  // likewise: the neighbours along the axes and at the corners
@@ -73,8 +73,10 @@ std::vector<Eigen::Vector2d> grid_of_places(const world::Map& map, double spacin
 }
 
 CandidateSearch::CandidateSearch(PlaceIndex& index, const GlobalLocalizerParameters& parameters)
-    : index_(&index), parameters_(parameters) {
-  candidates_.reserve(static_cast<std::size_t>(parameters.max_candidates) + 1);
+    : index_(&index),
+      parameters_(parameters),
+      most_proposed_(kProposedPerCandidate * static_cast<std::size_t>(parameters.max_candidates)) {
+  candidates_.reserve(most_proposed_ + 1);
 }
 
 void CandidateSearch::restart() {
@@ -82,31 +84,39 @@ void CandidateSearch::restart() {
   next_place_ = 0;
   compared_ = 0;
   sharpened_ = 0;
-  about_ = About{};
+  about_ = std::nullopt;
 }
 
 bool CandidateSearch::go_on(const Panorama& seen, WorkBudget& budget) {
   for (; next_place_ < index_->size(); ++next_place_) {
-    if (!compare_next(seen, budget)) return false;
+    // In a large home the turn ends before every place is in the index.
+    if (next_place_ >= index_->apart() && !index_->holds(next_place_)) continue;
+    const auto likeness = compare(next_place_, seen, budget);
+    if (!likeness) return false;
+    propose(next_place_, *likeness);
   }
-  return sharpen(seen, budget);
+  while (sharpened_ < std::min(candidates_.size(), static_cast<std::size_t>(parameters_.max_candidates))) {
+    if (!sharpen(candidates_[sharpened_], seen, budget)) return false;
+    if (!leave_out_double()) ++sharpened_;
+  }
+  candidates_.resize(sharpened_);
+  std::ranges::sort(candidates_, std::greater<>(), &Candidate::likeness);
+  return true;
 }
 
-// In a large home the turn ends before every place is in the index.
-bool CandidateSearch::compare_next(const Panorama& seen, WorkBudget& budget) {
-  if (next_place_ < index_->apart() && !index_->build(next_place_, budget)) return false;
-  if (!index_->holds(next_place_)) return true;
-  if (compared_ == 0 && !budget.grant()) return false;
+std::optional<Panorama::Likeness> CandidateSearch::compare(std::size_t place, const Panorama& seen,
+                                                           WorkBudget& budget) {
+  if (!index_->build(place, budget)) return std::nullopt;
+  if (compared_ == 0 && !budget.grant()) return std::nullopt;
   compared_ = (compared_ + 1) % kComparedAtOnce;
-  propose(next_place_, index_->panorama(next_place_).compare(seen));
-  return true;
+  return index_->panorama(place).compare(seen);
 }
 
 void CandidateSearch::propose(std::size_t place, const Panorama::Likeness& likeness) {
   const auto worse = [](const Candidate& a, const Candidate& b) { return a.likeness > b.likeness; };
   for (std::size_t i = 0; i < likeness.size(); ++i) {
     const float here = likeness[i];
-    const bool full = candidates_.size() >= static_cast<std::size_t>(parameters_.max_candidates);
+    const bool full = candidates_.size() >= most_proposed_;
     if (here <= 0.0F || (full && here <= candidates_.back().likeness)) continue;
     if (here < likeness[(i + 1) % likeness.size()] || here <= likeness[(i + likeness.size() - 1) % likeness.size()])
       continue;
@@ -114,7 +124,6 @@ void CandidateSearch::propose(std::size_t place, const Panorama::Likeness& liken
     candidate.X_WR =
         geometry::pose_on_floor(index_->place_m(place).x(), index_->place_m(place).y(), refined(likeness, i));
     candidate.likeness = here;
-    candidate.X_WR_alike = candidate.X_WR;
     // Neighbours on the grid are one candidate.
     const double near_m = kNeighbours * parameters_.spacing_m;
     const auto is_same = [&](const Candidate& other) {
@@ -124,56 +133,62 @@ void CandidateSearch::propose(std::size_t place, const Panorama::Likeness& liken
       continue;
     std::erase_if(candidates_, is_same);
     candidates_.insert(std::upper_bound(candidates_.begin(), candidates_.end(), candidate, worse), candidate);
-    if (candidates_.size() > static_cast<std::size_t>(parameters_.max_candidates)) candidates_.pop_back();
+    if (candidates_.size() > most_proposed_) candidates_.pop_back();
   }
 }
 
-// The place between those of the grid: the middle of those about the best one, each by how much more alike it is than what is hardly so.
-bool CandidateSearch::sharpen(const Panorama& seen, WorkBudget& budget) {
-  for (; sharpened_ < candidates_.size(); ++sharpened_, about_ = About{}) {
-    Candidate& candidate = candidates_[sharpened_];
-    const Eigen::Vector2d best = candidate.X_WR.translation().head<2>();
-    const double heading = geometry::heading_of(candidate.X_WR);
-    for (; about_.next < index_->size(); ++about_.next) {
-      const Eigen::Vector2d off = index_->place_m(about_.next) - best;
-      if (off.cwiseAbs().maxCoeff() > kAbout * parameters_.spacing_m) continue;
-      if (!index_->build(about_.next, budget) || !budget.grant()) return false;
-      const Panorama::Likeness likeness = index_->panorama(about_.next).compare(seen);
-      const std::size_t most = most_alike_about(likeness, heading);
-      const double above = std::max(0.0F, likeness[most] - candidate.likeness + kHardlyAlike);
-      const double turn = std::remainder(refined(likeness, most) - heading, 2.0 * std::numbers::pi);
-      about_.weights += above * above;
-      if (likeness[most] > about_.likeness) {
-        about_.likeness = likeness[most];
-        about_.X_WR = geometry::pose_on_floor(index_->place_m(about_.next).x(), index_->place_m(about_.next).y(),
-                                              heading + turn);
-      }
-      about_.sum += above * above * Eigen::Vector3d(off.x(), off.y(), turn);
-    }
-    const Eigen::Vector3d shift = about_.sum / about_.weights;
-    candidate.likeness = about_.likeness;
-    candidate.X_WR_alike = about_.X_WR;
-    candidate.X_WR = geometry::pose_on_floor(best.x() + shift.x(), best.y() + shift.y(), heading + shift.z());
+// The place between those of the grid: the middle of those about the most alike one, each by how much more alike it is than what is hardly so. Where not
+// every place was compared, that one may be beside the one proposed.
+bool CandidateSearch::sharpen(Candidate& candidate, const Panorama& seen, WorkBudget& budget) {
+  if (!about_) about_ = About(candidate.X_WR, candidate.likeness);
+  if (!look_about(seen, budget)) return false;
+  if (about_->X_WR_alike.translation() != about_->X_WR.translation() && !about_->moved) {
+    about_ = About(about_->X_WR_alike, about_->most_alike);
+    about_->moved = true;
+    if (!look_about(seen, budget)) return false;
   }
-  leave_out_doubles();
+  const Eigen::Vector3d shift = about_->sum / about_->weights;
+  const Eigen::Vector3d& middle = about_->X_WR.translation();
+  candidate.X_WR = geometry::pose_on_floor(middle.x() + shift.x(), middle.y() + shift.y(),
+                                           geometry::heading_of(about_->X_WR) + shift.z());
+  candidate.X_WR_alike = about_->X_WR_alike;
+  candidate.likeness = about_->most_alike;
+  about_ = std::nullopt;
   return true;
 }
 
-// What is most alike about one of them is next to what is about a better one, or the same.
-void CandidateSearch::leave_out_doubles() {
-  const double near_m = kNeighbours * parameters_.spacing_m;
-  std::ranges::sort(candidates_, std::greater<>(), &Candidate::likeness);
-  for (std::size_t i = 1; i < candidates_.size();) {
-    const bool is_double = std::any_of(
-        candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(i), [&](const Candidate& better) {
-          return are_near(better.X_WR_alike, candidates_[i].X_WR_alike, near_m, parameters_.same_deg * kDegree);
-        });
-    if (is_double) {
-      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(i));
-    } else {
-      ++i;
-    }
+bool CandidateSearch::look_about(const Panorama& seen, WorkBudget& budget) {
+  const Eigen::Vector2d middle = about_->X_WR.translation().head<2>();
+  const double heading = geometry::heading_of(about_->X_WR);
+  for (; about_->next < index_->size(); ++about_->next) {
+    const Eigen::Vector2d& place = index_->place_m(about_->next);
+    const Eigen::Vector2d off = place - middle;
+    if (off.cwiseAbs().maxCoeff() > kAbout * parameters_.spacing_m) continue;
+    const auto likeness = compare(about_->next, seen, budget);
+    if (!likeness) return false;
+    const std::size_t most = most_alike_about(*likeness, heading);
+    const double above = std::max(0.0F, (*likeness)[most] - about_->likeness + kHardlyAlike);
+    const double turn = std::remainder(refined(*likeness, most) - heading, 2.0 * std::numbers::pi);
+    about_->weights += above * above;
+    about_->sum += above * above * Eigen::Vector3d(off.x(), off.y(), turn);
+    if ((*likeness)[most] <= about_->most_alike) continue;
+    about_->most_alike = (*likeness)[most];
+    about_->X_WR_alike = geometry::pose_on_floor(place.x(), place.y(), heading + turn);
   }
+  return true;
+}
+
+// One whose most alike place is that of another one, or next to it. \return whether it was.
+bool CandidateSearch::leave_out_double() {
+  const auto last = candidates_.begin() + static_cast<std::ptrdiff_t>(sharpened_);
+  const auto same = std::find_if(candidates_.begin(), last, [&](const Candidate& other) {
+    return are_near(other.X_WR_alike, last->X_WR_alike, kNeighbours * parameters_.spacing_m,
+                    parameters_.same_deg * kDegree);
+  });
+  if (same == last) return false;
+  if (last->likeness > same->likeness) *same = *last;
+  candidates_.erase(last);
+  return true;
 }
 
 }  // namespace cgsr::global_localization

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,13 +48,13 @@ std::vector<Eigen::Vector2d> grid_of_places(const world::Map& map, double spacin
 /// The places of an index that are most like what was seen, each in the heading that it is seen from.
 class CandidateSearch {
  public:
-  /// \param index  outlives it.
+  /// \param index  outlives it; the neighbours of candidates are built in it.
   CandidateSearch(PlaceIndex& index, const GlobalLocalizerParameters& parameters);
 
   void restart();
 
-  /// Compares, as far as the budget goes, what the index holds: those of its places that are apart, which are built before, and whatever else there is. The
-  /// neighbours of the most alike ones are built if they aren't. Some 16 places a unit. \return whether the candidates are known.
+  /// Compares, as far as the budget goes: those of the index's places that are apart, which are built before, and whatever else it holds; then the neighbours
+  /// of the most alike ones, which are built too. Sixteen places a unit. \return whether the candidates are known.
   bool go_on(const Panorama& seen, WorkBudget& budget);
 
   /// The most alike first.
@@ -61,27 +62,34 @@ class CandidateSearch {
   [[nodiscard]] std::span<Candidate> candidates() { return candidates_; }
 
  private:
-  /// Places about a candidate, as far as they were compared.
+  /// Places about one, as far as they were compared.
   struct About {
+    About(const geometry::Pose& of, float its_likeness) : X_WR(of), likeness(its_likeness), X_WR_alike(of) {}
+
+    geometry::Pose X_WR;
+    float likeness;
     std::size_t next = 0;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();  ///< of their offsets and turns, metres and radians, by weight.
     double weights = 0.0;
-    float likeness = 0.0F;  ///< of the most alike one,
-    geometry::Pose X_WR = geometry::Pose::Identity();  ///< ... and where that is.
+    float most_alike = 0.0F;
+    geometry::Pose X_WR_alike;  ///< where that is.
+    bool moved = false;         ///< to what was the most alike place about another one.
   };
 
+  std::optional<Panorama::Likeness> compare(std::size_t place, const Panorama& seen, WorkBudget& budget);
   void propose(std::size_t place, const Panorama::Likeness& likeness);
-  bool compare_next(const Panorama& seen, WorkBudget& budget);
-  bool sharpen(const Panorama& seen, WorkBudget& budget);
-  void leave_out_doubles();
+  bool sharpen(Candidate& candidate, const Panorama& seen, WorkBudget& budget);
+  bool look_about(const Panorama& seen, WorkBudget& budget);
+  bool leave_out_double();
 
   PlaceIndex* index_;
   GlobalLocalizerParameters parameters_;
+  std::size_t most_proposed_;
   std::vector<Candidate> candidates_;
   std::size_t next_place_ = 0;
-  int compared_ = 0;  ///< places, of this unit.
-  std::size_t sharpened_ = 0;  ///< candidates.
-  About about_;                ///< the next one.
+  int compared_ = 0;            ///< places, of this unit.
+  std::size_t sharpened_ = 0;   ///< candidates.
+  std::optional<About> about_;  ///< the next one.
 };
 
 }  // namespace cgsr::global_localization

@@ -113,11 +113,14 @@ bool GlobalLocalizer::is_nearly_as_alike(const Candidate& candidate) const {
          parameters_.min_likeness_share * static_cast<double>(search_.candidates().front().likeness);
 }
 
-// In enough images. The panorama speaks for the most alike one where it speaks for no other.
+// In enough images. The panorama speaks for the most alike one where it speaks for no other: fewer will do then, if they are half of those looked at.
 bool GlobalLocalizer::is_corrected(const Candidate& candidate) const {
   const auto candidates = search_.candidates();
-  const bool alone = &candidate == &candidates.front() && (candidates.size() == 1 || !is_nearly_as_alike(candidates[1]));
-  return candidate.tried && candidate.corrected >= (alone ? parameters_.min_corrected_alone : parameters_.min_corrected);
+  if (!candidate.tried) return false;
+  if (candidate.corrected >= parameters_.min_corrected) return true;
+  const bool alone = &candidate == candidates.data() && (candidates.size() == 1 || !is_nearly_as_alike(candidates[1]));
+  return alone && candidate.corrected >= parameters_.min_corrected_alone &&
+         2 * candidate.corrected >= candidate.looked_at;
 }
 
 // From the image that shows most around to the last one, the shorter way, and on; the last one stands for the one that it looks like. A look at a bare wall

@@ -55,6 +55,10 @@ struct Waves {
 
 }  // namespace
 
+Panorama::Panorama() : cells_(static_cast<std::size_t>(kAzimuths * kElevations * kCourses)) {
+  Waves::get();  // not in the first image that compares
+}
+
 void Panorama::clear() {
   std::ranges::fill(cells_, 0.0F);
 }
@@ -155,11 +159,12 @@ void Panorama::take_harmonics() {
     for (int elevation = 0; elevation < kElevations; ++elevation) {
       if (empty_[static_cast<std::size_t>(course * kElevations + elevation)]) continue;
       Eigen::Map<RowOf<kAzimuths>> cells(row(course, elevation));
-      RowOf<kHarmonics> cosines = RowOf<kHarmonics>::Zero();
+      // A cell and the one as far to the other side have the same cosines, and sines of opposite signs.
+      RowOf<kHarmonics> cosines = cells(0) * waves.cosines.col(0) + cells(kHarmonics) * waves.cosines.col(kHarmonics);
       RowOf<kHarmonics> sines = RowOf<kHarmonics>::Zero();
-      for (int a = 0; a < kAzimuths; ++a) {
-        cosines += cells(a) * waves.cosines.col(a);
-        sines += cells(a) * waves.sines.col(a);
+      for (int a = 1; a < kHarmonics; ++a) {
+        cosines += (cells(a) + cells(kAzimuths - a)) * waves.cosines.col(a);
+        sines += (cells(a) - cells(kAzimuths - a)) * waves.sines.col(a);
       }
       cells << waves.scale.cwiseProduct(cosines), waves.scale.cwiseProduct(sines);
     }
@@ -184,8 +189,7 @@ Panorama::Likeness Panorama::compare(const Panorama& other) const {
   const Waves& waves = Waves::get();
   Likeness likeness;
   for (int turn = 0; turn < kAzimuths; ++turn) {
-    likeness[static_cast<std::size_t>(turn)] =
-        waves.cosines.col(turn).dot(cosines) + waves.sines.col(turn).dot(sines);
+    likeness[static_cast<std::size_t>(turn)] = waves.cosines.col(turn).dot(cosines) + waves.sines.col(turn).dot(sines);
   }
   return likeness;
 }

@@ -28,7 +28,7 @@ class Panorama {
   /// By turn: index i is a turn of i azimuth cells.
   using Likeness = std::array<float, kAzimuths>;
 
-  Panorama() : cells_(static_cast<std::size_t>(kAzimuths * kElevations * kCourses)) {}
+  Panorama();
 
   void clear();
 
@@ -36,12 +36,12 @@ class Panorama {
   /// \param from, to  its ends as seen from the camera, axes x at azimuth 0, z up; any length but 0.  \param weight  of a radian of it.
   void add(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double weight, const Sector& sector);
 
-  /// Between add() and compare(): what is seen at every azimuth alike is taken out, and the whole is scaled to length 1. Nothing is added afterwards
-  /// before clear().
+  /// Between add() and compare(): what is seen at every azimuth alike is taken out, the whole is scaled to length 1, and harmonics are taken, for some .5
+  /// million instructions. Nothing is added afterwards before clear().
   void finish();
 
   /// \return how alike this and another panorama are where the other one's azimuth 0 is this one's i-th cell: correlations, at most 1. By the product of
-  /// their harmonics around the horizon, a fiftieth of what the sums themselves cost.
+  /// their harmonics around the horizon: .03 million instructions, the sums themselves were 1.5.
   [[nodiscard]] Likeness compare(const Panorama& other) const;
 
  private:

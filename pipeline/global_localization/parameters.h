@@ -25,9 +25,9 @@ struct GlobalLocalizerParameters {
   double turn_sigma_m = 0.03;        ///< the same of a whole turn, when an earlier view of it is seen again.
   double turn_sigma_deg = 1.5;       ///< of the heading then, the turn being closed.
   double min_likeness_share =
-      0.85;                  ///< of the best candidate's: others are tried too, although the best one was right.
-  int min_corrected = 4;  ///< images of the turn in which the localizer must correct a candidate's pose,
-  int min_corrected_alone = 3;  ///< ... where no other one is nearly as alike.
+      0.85;                     ///< of the best candidate's: others are tried too, although the best one was right.
+  int min_corrected = 4;        ///< images of the turn in which the localizer must correct a candidate's pose,
+  int min_corrected_alone = 3;  ///< ... and half of those looked at, where no other one is nearly as alike.
   int enough_corrected = 5;  ///< with so many the trial ends, once the last image was among those that were looked at.
   /// Of the edges in the richest image of the turn; poorer images are left out, but six are looked at.
   double min_edges_share = 0.4;
@@ -39,7 +39,7 @@ struct GlobalLocalizerParameters {
       5;  ///< ... the most alike one is looked for about its panorama's place before, up to so many images.
   double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,
   double max_sigma_deg = 0.5;   ///< ... and its heading to a third of 1.5 degrees.
-  double max_settling_turn_deg = 450.0;  ///< after which no image confirmed the pose,
+  double max_settling_turn_deg = 450.0;  ///< to one side, after which no image confirmed the pose,
   int max_settling_images = 900;         ///< ... nor so many of a robot that does not turn on.
 };
 

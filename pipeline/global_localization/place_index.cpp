@@ -11,9 +11,10 @@
 namespace cgsr::global_localization {
 namespace {
 
-constexpr double kSide = 2.0 * std::numbers::pi / 3.0;
+constexpr double kSide = 2.0 * std::numbers::pi / PlaceIndex::kSides;
 constexpr double kFocalPerWidth = 0.277;  // of a camera that sees 122 degrees: a third of the way round, and a little
 constexpr int kSideUnits = 4;             // a look to one side: 2 to 4 million instructions
+constexpr int kFinishUnits = 1;           // its harmonics: half a million
 constexpr std::size_t kMostPieces = 3000;
 
 render::RasterParameters raster_parameters() {
@@ -106,9 +107,10 @@ void PlaceIndex::look(std::size_t place, int side) {
 
 bool PlaceIndex::build(std::size_t place, WorkBudget& budget) {
   for (int& side = sides_[place]; side < kSides; ++side) {
-    if (!localization::granted(budget, kSideUnits)) return false;
+    const bool is_last = side + 1 == kSides;
+    if (!localization::granted(budget, is_last ? kSideUnits + kFinishUnits : kSideUnits)) return false;
     look(place, side);
-    if (side + 1 == kSides) panoramas_[place].finish();
+    if (is_last) panoramas_[place].finish();
   }
   return true;
 }

@@ -24,9 +24,11 @@ Sector seen_by(const geometry::Camera& camera, const geometry::Pose& X_RC, doubl
 /// What the map's edges look like from places all over a home, as panoramas. Every other place of a grid comes first, as on a chessboard: in a large home
 /// those are enough to say about which places the others matter.
 ///
-/// Cost: 12 units for each place (localization/work.h). Memory: 38 kB a place.
+/// Cost: 13 units for each place (localization/work.h). Memory: 38 kB a place.
 class PlaceIndex {
  public:
+  static constexpr int kSides = 3;  ///< to which a place is looked from.
+
   /// \param map  outlives it.  \param camera  without lens, in the size of the images worked on.  \param X_RC  the mount.
   /// \param places_m  of the robot on the floor, in W.  \param spacing_m  of the grid that they are of.
   PlaceIndex(const world::Map& map, const geometry::Camera& camera, const geometry::Pose& X_RC,
@@ -45,8 +47,6 @@ class PlaceIndex {
   [[nodiscard]] const Panorama& panorama(std::size_t index) const { return panoramas_[index]; }
 
  private:
-  static constexpr int kSides = 3;
-
   void look(std::size_t place, int side);
 
   geometry::Pose X_RC_;

@@ -16,9 +16,9 @@
 
 namespace cgsr::global_localization {
 
-/// Confirms a candidate's pose by the image of now. The robot turns on until it faces a view of the turn in which the localizer found much of the map during
+/// Confirms a candidate's pose by the image of now. The robot turns until it faces a view of the turn in which the localizer found much of the map during
 /// the trial, and stands while that is looked at again, from the pose that was found then: one that turns sees another view before a search has ended. Mostly
-/// it faces one already, the last of the turn. A robot that stands although it should turn on is looked from as it stands.
+/// it faces one already, the last of the turn. A robot that stands although it should turn is looked from as it stands.
 ///
 /// Allocates nothing.
 class Settling {
@@ -55,7 +55,7 @@ class Settling {
   localization::PoseTracker tracker_;
   GlobalLocalizerParameters parameters_;
   std::array<CorrectedView, kViews> views_{};  ///< of the turn; without matches where they are not worth a look.
-  std::optional<std::size_t> view_;            ///< that the robot faces; nothing: it turns on.
+  std::optional<std::size_t> view_;            ///< that the robot faces; nothing: it turns.
   bool wants_turn_ = false;
   bool turns_back_ = false;
   bool looking_ = false;

@@ -28,7 +28,7 @@ class RunAnywhere : public ::testing::Test {
                "actor = [{ name = \"cart\", presence = [{ at_s = 0.0, present = false }] }]\n");
     Keys keys = half_size(changes);
     keys.insert({{"sim.scenario", quoted(scratch_ / "scenario.toml")},
-                 {"stage.localize.units", "60"},  // 13 are shipped, with which it searches for ten seconds more
+                 {"stage.localize.units", "60"},  // 13 are shipped, with which it searches for seconds more
                  {"localization.start.turn_radps", "0.78"},
                  {"motion.max_turn_radps", "0.78"}});
     write_text(scratch_ / "robot.toml", extended(CGSR_SOURCE_DIR "/config/robots/sim-home-anywhere.toml", keys));

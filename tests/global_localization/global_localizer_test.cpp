@@ -108,9 +108,9 @@ class PutDownAnywhere : public ::testing::Test {
   Pose X_W0_ = Pose::Identity();
   Pose X_WR_ = Pose::Identity();  ///< where it is at last.
   double turned_ = 0.0;
-  double odometry_turns_ = 1.0;   ///< of what the robot turns.
-  double lean_rad_ = 0.0;         ///< in the first image; less in those that follow.
-  int way_round_ = 1;             ///< -1: to the right.
+  double odometry_turns_ = 1.0;  ///< of what the robot turns.
+  double lean_rad_ = 0.0;        ///< in the first image; less in those that follow.
+  int way_round_ = 1;            ///< -1: to the right.
   bool turns_back_if_told_ = true;
   Pose X_WC_ = Pose::Identity();  ///< where the camera is.
   int images_ = 0;

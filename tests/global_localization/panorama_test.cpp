@@ -66,7 +66,7 @@ TEST(Panorama, ComparesEveryTurnAsIfItHadBeenMade) {
   }
 }
 
-// Two posts of one height: how alike they are is how their cells overlap, none of which the other one shares two cells on.
+// Two posts of one height are alike by the product of their blurred cells.
 TEST(Panorama, IsAlikeAsFarAsCellsOverlap) {
   const auto post_at = [](double cells) {
     const double azimuth = (cells + 0.5) * 2.0 * kPi / Panorama::kAzimuths;

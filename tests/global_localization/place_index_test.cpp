@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/global_localization/candidates.h"
+#include "pipeline/runtime/stage_budget.h"
 #include "tests/localization/small_room.h"
 
 namespace cgsr::global_localization {
@@ -61,7 +62,8 @@ TEST_F(PlacesOfASmallRoom, AreTheSameInWhicheverOrderTheyAreBuilt) {
   ASSERT_TRUE(one.build(last, whole_));
   EXPECT_TRUE(one.holds(last));
   EXPECT_FALSE(one.holds(0));
-  EXPECT_EQ(one.panorama(last).compare(in_order.panorama(last)), in_order.panorama(last).compare(in_order.panorama(last)));
+  EXPECT_EQ(one.panorama(last).compare(in_order.panorama(last)),
+            in_order.panorama(last).compare(in_order.panorama(last)));
   ASSERT_TRUE(one.build(whole_));
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_TRUE(one.holds(i)) << i;
 }
@@ -75,7 +77,7 @@ TEST_F(PlacesOfASmallRoom, BetweenThoseApartAreFoundAsWell) {
     CandidateSearch search(few, {});
     ASSERT_TRUE(search.go_on(all.panorama(at), whole_));
     const Candidate& best = search.candidates().front();
-    EXPECT_LT((best.X_WR.translation().head<2>() - all.place_m(at)).norm(), 0.5 * kSpacing_m) << at;
+    EXPECT_LT((best.X_WR.translation().head<2>() - all.place_m(at)).norm(), 0.2 * kSpacing_m) << at;
     EXPECT_NEAR(best.likeness, 1.0, 1e-3) << at;
     for (std::size_t i = 1; i < search.candidates().size(); ++i) {
       EXPECT_FALSE(are_near(search.candidates()[i].X_WR, best.X_WR, kSpacing_m, 0.17)) << at << ": one place twice";
@@ -93,6 +95,31 @@ TEST_F(PlacesOfASmallRoom, FarFromTheMostAlikeOnesAreNotBuilt) {
   for (std::size_t i = 0; i < few.size(); ++i) held += few.holds(i) ? 1 : 0;
   EXPECT_GT(held, few.apart());
   EXPECT_LE(held, few.apart() + 5);
+}
+
+// As much in each image as its units allow, and begun anew in the middle: the same candidates.
+TEST_F(PlacesOfASmallRoom, AreComparedInPieces) {
+  PlaceIndex all = index();
+  ASSERT_TRUE(all.build(whole_));
+  const Panorama& seen = all.panorama(all.apart() + 3);
+  PlaceIndex at_once = index();
+  CandidateSearch expected(at_once, {});
+  ASSERT_TRUE(expected.go_on(seen, whole_));
+  for (const int calls_before_restart : {0, 20, 60}) {
+    PlaceIndex few = index();
+    CandidateSearch search(few, {});
+    const auto go_on = [&] {
+      auto budget = runtime::StageBudget::of_units(7);
+      return search.go_on(seen, budget);
+    };
+    for (int i = 0; i < calls_before_restart; ++i) go_on();
+    if (calls_before_restart > 0) search.restart();
+    int calls = 1;
+    while (!go_on() && calls < 1000) ++calls;
+    EXPECT_GT(calls, calls_before_restart > 0 ? 5 : 20);
+    ASSERT_EQ(search.candidates().size(), expected.candidates().size()) << calls_before_restart;
+    EXPECT_TRUE(search.candidates().front().X_WR.isApprox(expected.candidates().front().X_WR)) << calls_before_restart;
+  }
 }
 
 }  // namespace

@@ -38,6 +38,16 @@ TEST_F(SeeksFirstPose, TurnsUntilItKnowsAndLetsItsTaskDriveThen) {
   EXPECT_EQ(robot_.pose().state(), "tracking") << "from there on the pose is carried on";
 }
 
+TEST_F(SeeksFirstPose, TurnsBackToAViewThatConfirmsWhereThatIsShorter) {
+  robot_.X_WR = geometry::pose_on_floor(1.5, 0.8, 3.0);
+  double farthest_rad = 0.0;
+  while (robot_.step().state == "seek_first_pose" && robot_.images < 400)
+    farthest_rad = std::max(farthest_rad, robot_.turned_rad);
+  EXPECT_EQ(robot_.phases, kFoundAtOnce);
+  EXPECT_LT(robot_.off_m(), 0.04);
+  EXPECT_LT(robot_.turned_rad, farthest_rad - 0.3);
+}
+
 // What it looks at of the turn does not move with the robot of now, although the localizer searches for many images.
 TEST_F(SeeksFirstPose, FindsItWhileItBalances) {
   robot_.lean_rad = 1.0 / 57.3;
