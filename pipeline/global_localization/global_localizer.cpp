@@ -248,7 +248,7 @@ Phase GlobalLocalizer::verdict() {
     if (!c.tried || are_near(c.X_WR, best->X_WR, parameters_.same_m, parameters_.same_deg * kDegree)) continue;
     if (share(c) > parameters_.max_rival_share * share(*best)) return Phase::kAmbiguous;
   }
-  settling_.begin(*best);
+  settling_.begin(*best, turn_);
   return Phase::kSettling;
 }
 

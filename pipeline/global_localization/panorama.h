@@ -41,7 +41,7 @@ class Panorama {
   void finish();
 
   /// \return how alike this and another panorama are where the other one's azimuth 0 is this one's i-th cell: correlations, at most 1. By the product of
-  /// their harmonics around the horizon: .03 million instructions, the sums themselves were 1.5.
+  /// their harmonics around the horizon: .04 million instructions, the sums themselves were 1.5.
   [[nodiscard]] Likeness compare(const Panorama& other) const;
 
  private:

@@ -39,8 +39,10 @@ struct GlobalLocalizerParameters {
       5;  ///< ... the most alike one is looked for about its panorama's place before, up to so many images.
   double max_sigma_m = 0.0167;  ///< the pose is told once it is known as well as this along the floor: a third of 5 cm,
   double max_sigma_deg = 0.5;   ///< ... and its heading to a third of 1.5 degrees.
+  double agree_m = 0.04;        ///< two views agree that have the robot no farther apart, over the turn between them,
+  double agree_deg = 1.0;       ///< ... nor turned by more.
   double max_settling_turn_deg = 450.0;  ///< to one side, after which no image confirmed the pose,
-  int max_settling_images = 900;         ///< ... nor so many of a robot that does not turn on.
+  int max_settling_images = 900;         ///< ... nor so many of a robot that stands meanwhile.
 };
 
 }  // namespace cgsr::global_localization

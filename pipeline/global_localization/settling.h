@@ -20,6 +20,9 @@ namespace cgsr::global_localization {
 /// the trial, and stands while that is looked at again, from the pose that was found then: one that turns sees another view before a search has ended. Mostly
 /// it faces one already, the last of the turn. A robot that stands although it should turn is looked from as it stands.
 ///
+/// An image may be matched with edges that lie beside the right ones, and be sure of it. It confirms the pose only where most of the trial's other views agree
+/// with it, or another one that was looked at again.
+///
 /// Allocates nothing.
 class Settling {
  public:
@@ -27,8 +30,8 @@ class Settling {
   Settling(localization::Localizer& localizer, const geometry::Pose& X_RC,
            const localization::PoseTrackerParameters& tracking, const GlobalLocalizerParameters& parameters);
 
-  /// \param candidate  that was tried.
-  void begin(const Candidate& candidate);
+  /// \param candidate  that was tried in images of the turn.
+  void begin(const Candidate& candidate, const Turn& turn);
 
   /// \param turn  whole, with the images in which the candidate was tried; it has followed the motion to this image.
   /// \return whether the pose is confirmed, or no view is left that could do so; nothing: it goes on.
@@ -42,6 +45,12 @@ class Settling {
   [[nodiscard]] const localization::TrackedPose& now() const { return tracker_.now(); }
 
  private:
+  /// Where a view has the robot.
+  struct Opinion {
+    geometry::Pose X_WF;  ///< the frame of the turn's first image (Turn::X_FR).
+    double turned_rad;    ///< where it was seen from (Turn::turned_rad).
+  };
+
   [[nodiscard]] std::optional<std::size_t> nearest_view(const Turn& turn, double within_rad) const;
   [[nodiscard]] std::optional<std::size_t> faced_view(const Turn& turn);
   void turn_on(const Turn& turn);
@@ -50,12 +59,16 @@ class Settling {
   [[nodiscard]] bool begins_to_look(const Turn& turn);
   [[nodiscard]] std::optional<bool> judge(const Turn& turn);
   [[nodiscard]] bool is_sure() const;
+  [[nodiscard]] bool agrees(const Turn& turn) const;
 
+  geometry::Pose X_RC_;
   localization::Localizer* localizer_;
   localization::PoseTracker tracker_;
   GlobalLocalizerParameters parameters_;
   std::array<CorrectedView, kViews> views_{};  ///< of the turn; without matches where they are not worth a look.
   std::optional<std::size_t> view_;            ///< that the robot faces; nothing: it turns.
+  std::array<std::optional<Opinion>, kViews> tried_{};      ///< by the trial,
+  std::array<std::optional<Opinion>, kViews> looked_at_{};  ///< ... and looked at again, and sure.
   bool wants_turn_ = false;
   bool turns_back_ = false;
   bool looking_ = false;

@@ -1,5 +1,6 @@
 #include "pipeline/global_localization/global_localizer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -72,8 +73,12 @@ class PutDownAnywhere : public ::testing::Test {
         .pitch_rad = pitch_rad,
         .axle_height_m = kAxle_m};
     ++images_;
-    X_WC_ = X_WR * leaning(pitch_rad, kAxle_m) * X_RC_;
-    if (searcher_->looks_at(motion)) picture_.emplace(map_, X_WC_, camera_, 1.5, static_cast<std::uint32_t>(images_));
+    const Eigen::Vector2d slid_m = std::min(std::abs(turned_) / (2.0 * std::numbers::pi), 1.0) * slid_m_;
+    X_WC_ = geometry::pose_on_floor(slid_m.x(), slid_m.y(), 0.0) * X_WR * leaning(pitch_rad, kAxle_m) * X_RC_;
+    const bool moved = std::abs(std::abs(turned_) - 2.0 * std::numbers::pi) < kMovedView;
+    const Pose X_WC_seen = moved ? geometry::pose_on_floor(moved_m_.x(), moved_m_.y(), 0.0) * X_WC_ : X_WC_;
+    if (searcher_->looks_at(motion))
+      picture_.emplace(map_, X_WC_seen, camera_, 1.5, static_cast<std::uint32_t>(images_));
     return searcher_->update(picture_->view(), motion, budget);
   }
 
@@ -98,6 +103,7 @@ class PutDownAnywhere : public ::testing::Test {
   }
 
   static constexpr double kAxle_m = 0.24;
+  static constexpr double kMovedView = 16.0 * kDegree;
 
   world::Map map_;
   geometry::Camera camera_;
@@ -112,7 +118,9 @@ class PutDownAnywhere : public ::testing::Test {
   double lean_rad_ = 0.0;        ///< in the first image; less in those that follow.
   int way_round_ = 1;            ///< -1: to the right.
   bool turns_back_if_told_ = true;
-  Pose X_WC_ = Pose::Identity();  ///< where the camera is.
+  Eigen::Vector2d moved_m_{0.0, 0.0};  ///< what it sees after a whole turn is that much elsewhere, against the map.
+  Eigen::Vector2d slid_m_{0.0, 0.0};   ///< in W, over the first whole turn, and its odometry does not tell.
+  Pose X_WC_ = Pose::Identity();       ///< where the camera is.
   int images_ = 0;
   std::optional<Picture> picture_;  ///< the last that was looked at.
 };
@@ -176,6 +184,31 @@ TEST_F(PutDownAnywhere, TurnsBackWhereThatIsShorter) {
       if (!back) images = images_;
     }
     EXPECT_LT(images_, images) << way_round;
+  }
+}
+
+// Something was pushed aside in the view that the turn ends with, and the map is matched with it: what it saw elsewhere contradicts.
+TEST_F(PutDownAnywhere, TurnsAwayFromAViewThatTheOthersContradict) {
+  for (const Eigen::Vector2d& moved_m : {Eigen::Vector2d{0.07, 0.0}, {0.0, 0.07}}) {
+    searcher_->restart();
+    images_ = 0;
+    turned_ = 0.0;
+    moved_m_ = moved_m;
+    ASSERT_EQ(turn(geometry::pose_on_floor(0.9, 1.7, 0.3), whole_), Phase::kFound) << moved_m.transpose();
+    expect_right();
+    EXPECT_GT(std::abs(std::abs(turned_) - 2.0 * std::numbers::pi), kMovedView);
+  }
+}
+
+// Its wheels slipped while it turned, which its odometry does not tell: the views of the turn contradict each other, and two that it looks at again agree.
+TEST_F(PutDownAnywhere, IsFoundByTwoViewsThatItLooksAtAgain) {
+  for (const Eigen::Vector2d& slid_m : {Eigen::Vector2d{0.1, 0.0}, {-0.08, 0.0}}) {
+    searcher_->restart();
+    images_ = 0;
+    turned_ = 0.0;
+    slid_m_ = slid_m;
+    ASSERT_EQ(turn(geometry::pose_on_floor(0.9, 1.7, 5.0), whole_), Phase::kFound) << slid_m.transpose();
+    expect_right();
   }
 }
 
@@ -278,6 +311,21 @@ GlobalLocalizerParameters corrected_in_images(int images) {
   GlobalLocalizerParameters parameters;
   parameters.min_corrected = images;
   return parameters;
+}
+
+GlobalLocalizerParameters no_two_agree() {
+  GlobalLocalizerParameters parameters;
+  parameters.agree_m = 0.0;
+  return parameters;
+}
+
+class PutDownWhereNoTwoAgree : public PutDownAnywhere {
+ protected:
+  PutDownWhereNoTwoAgree() : PutDownAnywhere(small_room(), no_two_agree()) {}
+};
+
+TEST_F(PutDownWhereNoTwoAgree, IsNotFound) {
+  EXPECT_EQ(turn(geometry::pose_on_floor(0.9, 1.7, 0.3), whole_), Phase::kNotFound);
 }
 
 /// More images than there are would have to correct its pose.
