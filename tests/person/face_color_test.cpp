@@ -87,6 +87,21 @@ TEST(FaceColor, TakesNoPartWhereItIsSwitchedOff) {
   EXPECT_EQ(tracker.update({somebody(kWall).view()}).person, std::nullopt);
 }
 
+// Skin where a stranger's face was just decided on is his until faces are looked for again.
+TEST(FaceColor, IsAStrangersWhereHisFaceWas) {
+  PersonTracker tracker;
+  train(tracker, kRed);
+  const Picture covered = somebody(kWall);
+  while (!tracker.face_is_due()) tracker.update({covered.view()});
+  ASSERT_EQ(tracker.update({covered.view(), face_of(std::nullopt)}).source, PersonSource::kFace);
+  ASSERT_FALSE(tracker.face_is_due());
+  const auto between = tracker.update({covered.view()});
+  EXPECT_EQ(between.source, PersonSource::kFaceColor);
+  EXPECT_EQ(between.person, kStranger);
+  ASSERT_TRUE(tracker.face_is_due());
+  EXPECT_EQ(tracker.update({covered.view()}).person, 1) << "his face is gone";
+}
+
 // 6.3.1: what has the shirt's colours and is not below the head is none, and the head's colours teach the shirt so.
 TEST(FaceColor, ShowsThatWhatLooksLikeTheShirtIsNone) {
   PersonTracker tracker;

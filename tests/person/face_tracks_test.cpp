@@ -2,36 +2,17 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
-#include <sstream>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 #include "pipeline/person/face/face_tracks.h"
+#include "tests/person/drawn_face.h"
 #include "tests/support/counted_budget.h"
 
 namespace cgsr::person {
 namespace {
-
-void draw_face(cv::Mat& grey, int x, int y, double size) {
-  const auto oval = [&](double dx, double dy, double w, double h, int value) {
-    cv::ellipse(grey, {x + static_cast<int>(dx * size), y + static_cast<int>(dy * size)},
-                {static_cast<int>(w * size), static_cast<int>(h * size)}, 0, 0, 360, value, cv::FILLED, cv::LINE_AA);
-  };
-  oval(0.0, -0.1, 0.46, 0.62, 40);  // hair
-  oval(0.0, 0.05, 0.38, 0.52, 190);
-  for (const double side : {-1.0, 1.0}) {
-    oval(side * 0.17, -0.1, 0.11, 0.06, 90);
-    oval(side * 0.17, -0.1, 0.05, 0.05, 30);
-    oval(side * 0.17, -0.2, 0.12, 0.025, 60);
-  }
-  oval(0.0, 0.12, 0.05, 0.14, 205);
-  oval(0.0, 0.2, 0.08, 0.03, 130);
-  oval(0.0, 0.35, 0.14, 0.04, 100);
-}
 
 cv::Mat people_at(const std::vector<int>& places) {
   cv::Mat grey(480, 640, CV_8UC1, cv::Scalar(120));
@@ -45,10 +26,7 @@ ImageView view_of_grey(const cv::Mat& grey) {
 }
 
 FaceTracks tracks() {
-  std::ifstream in("/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml");
-  std::stringstream text;
-  text << in.rdbuf();
-  return FaceTracks(std::move(FaceDetector::from_cascade(text.str(), {}).value()));
+  return FaceTracks(detector_of_debian());
 }
 
 void look(FaceTracks& faces, const cv::Mat& grey, int images, int units) {

@@ -155,7 +155,6 @@ TEST(PersonTracker, LearnsAShirtUnderAMarkerThatFacesTheCameraAlone) {
   }
 }
 
-// 6.3.1: a shirt as large as the wall is none.
 // Two known people side by side: the shirt of the person of interest counts, not the larger one.
 TEST(PersonTracker, KeepsToTheShirtOfThePersonOfInterestBesideALargerOne) {
   PersonTracker tracker;
@@ -177,6 +176,7 @@ TEST(PersonTracker, KeepsToTheShirtOfThePersonOfInterestBesideALargerOne) {
   EXPECT_EQ(tracker.update({blue.view(), std::nullopt, 1}).person, 2) << "who is of interest is not there";
 }
 
+// 6.3.1: a shirt as large as the wall is none.
 TEST(PersonTracker, VetoesAShirtOfImplausibleSize) {
   PersonTracker tracker;
   learn(tracker, 1, kRed);
