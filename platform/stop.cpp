@@ -16,6 +16,7 @@ constexpr std::array kStopSignals{SIGTERM, SIGINT, SIGHUP};
 std::atomic<StopRequest*> listener{nullptr};
 std::atomic<int> last_signal{0};
 std::array<struct sigaction, kStopSignals.size()> former;
+struct sigaction former_pipe;
 
 constexpr int kGoOn = -1;
 std::atomic<int> exit_code_at_once{kGoOn};
@@ -55,10 +56,14 @@ StopOnSignals::StopOnSignals(StopRequest& stop) {
     const bool by_nohup = kStopSignals[i] == SIGHUP && former[i].sa_handler == SIG_IGN;
     if (!by_nohup) sigaction(kStopSignals[i], &action, nullptr);
   }
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &ignore, &former_pipe);
 }
 
 StopOnSignals::~StopOnSignals() {
   for (std::size_t i = 0; i < kStopSignals.size(); ++i) sigaction(kStopSignals[i], &former[i], nullptr);
+  sigaction(SIGPIPE, &former_pipe, nullptr);
   listener.store(nullptr, std::memory_order_release);
 }
 

@@ -27,7 +27,8 @@ class StopRequest {
 };
 
 /// While this lives, SIGTERM, SIGINT and SIGHUP request `stop` instead of ending the process; a SIGHUP that was ignored before (nohup)
-/// stays ignored. One at a time per process; what the signals did before comes back with the destructor. System calls are restarted, so
+/// stays ignored. SIGPIPE is ignored: whoever reads the log may end before the robot does, and a line that nobody reads is no reason to fall
+/// silent on the bus. One at a time per process; what the signals did before comes back with the destructor. System calls are restarted, so
 /// no other code meets an EINTR from these.
 class StopOnSignals {
  public:

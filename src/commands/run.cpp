@@ -122,10 +122,10 @@ int run_robot(const RunCommand& options) {
 
   if (auto done = (*robot)->run(stop); !done) return report(done.error());
   const sinks::Summary summary = (*robot)->summary(ended_by(**robot));
-  fmt::print("{}", options.run.profile ? profile_of(summary) : summary.text);
-  if (!options.json.empty()) {
+  if (!options.json.empty()) {  // first: whoever reads the terminal's output may be gone
     if (auto written = write_file(options.json, summary.json.dump(1) + "\n"); !written) return report(written.error());
   }
+  fmt::print("{}", options.run.profile ? profile_of(summary) : summary.text);
   return state.outputs.sinks.problem().empty() ? kSuccess : kFailure;
 }
 

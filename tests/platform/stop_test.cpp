@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <csignal>
 #include <thread>
 
@@ -79,6 +81,22 @@ TEST(StopOnSignals, LeavesAHangUpIgnoredThatNohupIgnores) {
     EXPECT_FALSE(stop.requested());
   }
   sigaction(SIGHUP, &former, nullptr);
+}
+
+// `cgsr run | head`: the robot goes on when its reader is gone.
+TEST(StopOnSignals, OutlivesWhoeverReadsItsOutput) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  close(ends[0]);
+  StopRequest stop;
+  {
+    const StopOnSignals signals(stop);
+    EXPECT_EQ(write(ends[1], "line", 4), -1);
+    EXPECT_EQ(errno, EPIPE);
+    EXPECT_FALSE(stop.requested());
+  }
+  EXPECT_EXIT(static_cast<void>(write(ends[1], "line", 4)), testing::KilledBySignal(SIGPIPE), "") << "as before";
+  close(ends[1]);
 }
 
 TEST(EndAtOnceOnSignals, EndsTheProcessWhileItLivesAndNotAfterwards) {
