@@ -90,8 +90,10 @@ tl::expected<void, DriveFault> RmpDrive::rearm(MonoTime now) {
   if (!started_) return tl::unexpected(DriveFault::kStarting);
   listen(now);
   judge(now);
+  // A base that was switched on with its emergency stop open has not been asked for its mode: it is now.
+  const bool lacks_mode_alone = standing_ == DriveFault::kMotorsOff && !was_ready_ && wanted_mode();
+  if (standing_ == DriveFault::kNone || lacks_mode_alone) latched_ = DriveFault::kNone;
   if (standing_ != DriveFault::kNone) return tl::unexpected(standing_);
-  latched_ = DriveFault::kNone;
   speech_.wanted = Twist{};  // what was asked for before is forgotten
   return {};
 }

@@ -242,6 +242,25 @@ TEST(RmpDrive, AsksForTheModeThatTheConfigurationWants) {
   EXPECT_EQ(changed.drive.report().power.mode, hal::rmp::OperationalMode::kTractor);
 }
 
+// Whoever closes it again and arms has the base asked for its mode then, as one that woke up well is.
+TEST(RmpDrive, AsksForTheModeOnceAnEmergencyStopThatWasOpenFromTheStartIsClosed) {
+  Rig::Setup setup;
+  setup.base.mode = sim::BaseMode::kDisabled;
+  setup.base_script = {{.trouble = sim::BaseTrouble::kEmergencyStop, .to = at(1.0)}};
+  setup.drive.mode_at_start = hal::rmp::ModeAtStart::kBalance;
+  Rig rig(setup);
+  (void)rig.run_until(0.5, kStand);
+  EXPECT_EQ(rig.drive.fault(), DriveFault::kEmergencyStop);
+  (void)rig.run_until(1.5, kStand);
+  EXPECT_EQ(rig.drive.fault(), DriveFault::kMotorsOff);
+  EXPECT_EQ(rig.drive.report().power.mode, hal::rmp::OperationalMode::kDisabled) << "until somebody arms";
+  EXPECT_EQ(rig.drive.rearm(rig.now).error(), DriveFault::kMotorsOff);
+  (void)rig.run_until(2.5, kStand);
+  EXPECT_TRUE(rig.drive.rearm(rig.now));
+  EXPECT_TRUE(rig.run_until(3.0, kForward));
+  EXPECT_EQ(rig.drive.report().power.mode, hal::rmp::OperationalMode::kBalance);
+}
+
 // A wrong turn scale shows as a turn that is not what was commanded: that is how it is calibrated.
 TEST(RmpDrive, AnotherFirmwareTurnsAtAnotherRate) {
   Rig::Setup setup;
