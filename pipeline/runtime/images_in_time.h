@@ -13,7 +13,7 @@ namespace cgsr::runtime {
 /// were.
 ///
 /// An image was in time when its frame ended within one period of its start. An image that the camera lost (a gap in
-/// the sequence) was not, nor was one that did not come. The period is the camera's: a 10 Hz video is not late. Before
+/// the sequence) was not, nor was one that did not come; an image that is both counts once. The period is the camera's: a 10 Hz video is not late. Before
 /// the first 30 the answer is no.
 class ImagesInTime {
  public:
@@ -27,7 +27,10 @@ class ImagesInTime {
   void dealt_with(std::uint64_t sequence, MonoTime started, MonoTime finished);
 
   /// A frame ran without an image, because none came.
-  void missed() { note(false); }
+  void missed() {
+    ++missed_;
+    note(false);
+  }
 
   [[nodiscard]] bool enough() const { return seen_ >= kWindow && window_.count() >= kNeeded; }
 
@@ -41,6 +44,7 @@ class ImagesInTime {
   std::bitset<kWindow> window_;  // bit i: the i-th last was in time
   std::size_t seen_ = 0;         // up to kWindow
   std::optional<std::uint64_t> last_sequence_;
+  std::uint64_t missed_ = 0;  // since then
 };
 
 }  // namespace cgsr::runtime

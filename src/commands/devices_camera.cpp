@@ -15,6 +15,7 @@
 #include "src/commands/option_checks.h"
 #include "src/config/load.h"
 #include "src/devices/camera_setup.h"
+#include "src/output/output_claims.h"
 #include "src/output/terminal_picture.h"
 #include "src/output/text_file.h"
 
@@ -26,6 +27,7 @@ struct Options {
   std::string config;
   std::string device;
   std::string output;
+  bool force = false;
   int columns = 80;
 };
 
@@ -54,6 +56,10 @@ Result<hal::v4l2::V4l2Parameters> parameters_of(const Options& options) {
 }
 
 int run_setup(const Options& options) {
+  OutputClaims files(options.force);
+  files.reads(options.config, "--config");
+  files.writes(options.output, "--output", toml_with({"camera"}));
+  if (auto claimed = files.claim(); !claimed) return report(claimed.error());
   const auto parameters = parameters_of(options);
   if (!parameters) return report(parameters.error());
   const bool colors = isatty(STDOUT_FILENO) != 0;
@@ -86,6 +92,7 @@ void add_devices_camera(CLI::App& devices, int& exit_code) {
   command->add_option("--device", options->device, "a device node, or an id that cgsr devices prints");
   command->add_option("--config", options->config, "a robot's file whose camera, size and rate are taken");
   command->add_option("--output", options->output, "write the lines to this file");
+  add_force_option(*command, options->force);
   command->add_option("--columns", options->columns, "the width of the picture in characters")
       ->check(in_range(8, 400))
       ->capture_default_str();

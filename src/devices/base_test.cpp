@@ -13,6 +13,7 @@ namespace {
 
 constexpr Duration kCycle = seconds(0.010);
 constexpr Duration kPrintEvery = seconds(0.5);
+constexpr double kCatchUp_s = 0.5;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 class BaseTest {
@@ -83,6 +84,8 @@ class BaseTest {
   }
 
   Result<void> move() {
+    // Nobody read the bus while somebody was asked: what waits there is old, and the newest did not fit.
+    cycle(kCatchUp_s, std::nullopt);
     if (const auto armed = drive_.rearm(clock_.now()); !armed) {
       return fail(fmt::format("the base cannot be armed: {}", hal::to_string(armed.error())));
     }

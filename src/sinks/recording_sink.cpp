@@ -56,6 +56,11 @@ Result<void> RecordingSink::on_image(const ImageReport& report) {
   return recorder_->step();
 }
 
+// While no images come, what the motion loop did is what a reader of the recording looks for.
+Result<void> RecordingSink::on_missing_image(const runtime::FrameRecord& /*record*/) {
+  return recorder_->step();
+}
+
 Result<void> RecordingSink::on_control_cycle(const MotionStatus& status) {
   post(motion(), status.stamp, status);
   return {};

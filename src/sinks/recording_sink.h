@@ -16,6 +16,7 @@ class RecordingSink final : public Sink {
   static Result<std::unique_ptr<RecordingSink>> create(const std::string& path, bool with_images = true);
 
   Result<void> on_image(const ImageReport& report) override;
+  Result<void> on_missing_image(const runtime::FrameRecord& record) override;
   Result<void> on_control_cycle(const MotionStatus& status) override;
   Result<void> finish() override { return recorder_->close(); }
   void summarize(Summary& summary) override;

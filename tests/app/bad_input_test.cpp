@@ -247,6 +247,9 @@ TEST_F(BadInputFault, OutputsThatWouldDestroyAnInput) {
                            scratch_ / "run.csv", "--json", learned, "--force"}),
                  "is read as --model");
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "run.csv"));
+  const std::string robot = scratch_ / "robot.toml";
+  expect_refused(run_cgsr({"devices", "camera", "--setup", "--config", robot, "--output", robot, "--force"}),
+                 "is read as --config");
   EXPECT_EQ(read_text(learned), before);
 }
 

@@ -37,6 +37,7 @@ struct Bench {
                      {[this](const std::string& line) { lines.push_back(line); },
                       [this, confirms] {
                         ++asked;
+                        clock.sleep_until(clock.now() + thinks);
                         return confirms;
                       }});
   }
@@ -48,6 +49,7 @@ struct Bench {
   std::vector<std::string> lines;
   int commands = 0;
   int asked = 0;
+  Duration thinks{};  ///< whoever is asked.
 };
 
 TEST(BaseTest, ListensShowsOdometryAndStatusAndSendsNothing) {
@@ -76,6 +78,15 @@ TEST(BaseTest, ConfirmedItMovesALittleForwardAndLeftAndStands) {
   EXPECT_GT(bench.commands, 100);
   EXPECT_THAT(bench.lines.back(), testing::AllOf(HasSubstr("forward: +0."), HasSubstr("left: +")));
   EXPECT_NEAR(bench.segway.base().state_at(bench.clock.now()).velocity.forward_mps, 0.0, 0.05);
+}
+
+// Nobody reads the bus meanwhile.
+TEST(BaseTest, WhoeverConfirmsMayTakeHisTime) {
+  Bench bench;
+  bench.thinks = seconds(20.0);
+  const auto passed = bench.test({.arm = true}, true);
+  EXPECT_TRUE(passed) << passed.error().message;
+  EXPECT_THAT(bench.lines.back(), HasSubstr("forward: +0."));
 }
 
 TEST(BaseTest, ASilentBaseAndOneThatCannotMoveAreNamed) {

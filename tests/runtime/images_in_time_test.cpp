@@ -81,6 +81,24 @@ TEST(ImagesInTime, FramesWithoutAnImageCountAsLate) {
   EXPECT_FALSE(images.enough());
 }
 
+// A damaged image is missed, and leaves a gap in the sequence.
+TEST(ImagesInTime, AnImageThatWasMissedIsNoGapAsWell) {
+  ImagesInTime images(kPeriod);
+  Feed feed(images);
+  feed.images(30, milliseconds(10));
+  for (int i = 0; i < 2; ++i) {
+    images.missed();
+    feed.lose(1);
+    feed.image(milliseconds(10));
+  }
+  EXPECT_EQ(images.in_time(), 28U);
+  EXPECT_TRUE(images.enough());
+  images.missed();
+  feed.lose(3);
+  feed.image(milliseconds(10));
+  EXPECT_EQ(images.in_time(), 25U) << "one of these three was missed";
+}
+
 // A camera that starts again counts from 0: that is no loss of two thousand million images.
 TEST(ImagesInTime, ASequenceThatStartsAgainIsNoGap) {
   ImagesInTime images(kPeriod);
@@ -95,6 +113,7 @@ TEST(ImagesInTimeProperty, IsTheLastThirty) {
   ImagesInTime images(kPeriod);
   std::deque<bool> model;
   std::uint64_t sequence = 0;
+  std::uint64_t missed = 0;
   const auto note = [&](bool in_time) {
     model.push_back(in_time);
     if (model.size() > 30) model.pop_front();
@@ -105,10 +124,12 @@ TEST(ImagesInTimeProperty, IsTheLastThirty) {
     const auto choice = random() % (rough ? 10 : 40);
     if (choice == 0) {
       images.missed();
+      ++missed;
       note(false);
     } else {
       const std::uint64_t lost = choice == 1 ? random() % 3 : 0;
-      for (std::uint64_t i = 0; i < lost; ++i) note(false);
+      for (std::uint64_t i = missed; sequence > 0 && i < lost; ++i) note(false);
+      missed = 0;
       sequence += lost + 1;
       const bool late = choice == 2;
       images.dealt_with(sequence, MonoTime{}, MonoTime{} + (late ? milliseconds(34) : milliseconds(20)));
