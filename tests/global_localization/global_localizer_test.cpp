@@ -59,6 +59,12 @@ class PutDownAnywhere : public ::testing::Test {
                                                   localization::PoseTrackerParameters{}, parameters);
   }
 
+  void begin_again() {
+    searcher_->restart();
+    images_ = 0;
+    turned_ = 0.0;
+  }
+
   /// An image from where the robot is, and what its odometry, which began elsewhere, says of that.
   Phase see(const Pose& X_WR, WorkBudget& budget) {
     const Pose X_R0R = X_W0_.inverse() * X_WR;
@@ -127,9 +133,7 @@ class PutDownAnywhere : public ::testing::Test {
 
 TEST_F(PutDownAnywhere, FindsItselfByTurningOnce) {
   for (const auto& [x_m, y_m, heading] : {std::tuple{0.9, 1.7, 0.3}, {2.2, 2.1, -2.0}, {1.5, 0.8, 3.0}}) {
-    searcher_->restart();
-    images_ = 0;
-    turned_ = 0.0;
+    begin_again();
     ASSERT_EQ(turn(geometry::pose_on_floor(x_m, y_m, heading), whole_), Phase::kFound) << x_m << ", " << y_m;
     expect_right();
     EXPECT_LE(images_, 36 + 250);
@@ -139,9 +143,7 @@ TEST_F(PutDownAnywhere, FindsItselfByTurningOnce) {
 // Wheels whose track is told wrong: the images say when the turn is whole.
 TEST_F(PutDownAnywhere, BelievesTheImagesHowFarItTurned) {
   for (const double share : {0.95, 1.05}) {
-    searcher_->restart();
-    images_ = 0;
-    turned_ = 0.0;
+    begin_again();
     odometry_turns_ = share;
     ASSERT_EQ(turn(geometry::pose_on_floor(2.2, 2.1, -2.0), whole_), Phase::kFound) << share;
     expect_right();
@@ -176,9 +178,7 @@ TEST_F(PutDownAnywhere, TurnsBackWhereThatIsShorter) {
     int images = 0;
     for (const bool back : {false, true}) {
       turns_back_if_told_ = back;
-      searcher_->restart();
-      images_ = 0;
-      turned_ = 0.0;
+      begin_again();
       ASSERT_EQ(turn(geometry::pose_on_floor(1.5, y_m, heading), whole_), Phase::kFound) << way_round;
       expect_right();
       if (!back) images = images_;
@@ -190,9 +190,7 @@ TEST_F(PutDownAnywhere, TurnsBackWhereThatIsShorter) {
 // Something was pushed aside in the view that the turn ends with, and the map is matched with it: what it saw elsewhere contradicts.
 TEST_F(PutDownAnywhere, TurnsAwayFromAViewThatTheOthersContradict) {
   for (const Eigen::Vector2d& moved_m : {Eigen::Vector2d{0.07, 0.0}, {0.0, 0.07}}) {
-    searcher_->restart();
-    images_ = 0;
-    turned_ = 0.0;
+    begin_again();
     moved_m_ = moved_m;
     ASSERT_EQ(turn(geometry::pose_on_floor(0.9, 1.7, 0.3), whole_), Phase::kFound) << moved_m.transpose();
     expect_right();
@@ -203,9 +201,7 @@ TEST_F(PutDownAnywhere, TurnsAwayFromAViewThatTheOthersContradict) {
 // Its wheels slipped while it turned, which its odometry does not tell: the views of the turn contradict each other, and two that it looks at again agree.
 TEST_F(PutDownAnywhere, IsFoundByTwoViewsThatItLooksAtAgain) {
   for (const Eigen::Vector2d& slid_m : {Eigen::Vector2d{0.1, 0.0}, {-0.08, 0.0}}) {
-    searcher_->restart();
-    images_ = 0;
-    turned_ = 0.0;
+    begin_again();
     slid_m_ = slid_m;
     ASSERT_EQ(turn(geometry::pose_on_floor(0.9, 1.7, 5.0), whole_), Phase::kFound) << slid_m.transpose();
     expect_right();
