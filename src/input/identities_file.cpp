@@ -16,6 +16,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "platform/cbor_depth.h"
+
 namespace cgsr::app {
 namespace {
 
@@ -122,6 +124,7 @@ tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::pat
   std::ifstream in(path, std::ios::binary);
   const Bytes bytes(std::istreambuf_iterator<char>(in), {});
   if (bytes.size() != size) return unreadable(path, "cannot be read");
+  if (const auto problem = cbor_depth_problem(bytes)) return damaged(path, *problem);
   try {
     const json file = json::from_cbor(bytes);
     if (!file.is_object() || file.value("format", "") != kFormat) return damaged(path, "it is something else");
@@ -131,6 +134,7 @@ tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::pat
     const Bytes& payload = file.at("payload").get_binary();
     const Bytes& checksum = file.at("sha256").get_binary();
     if (sha256_of(payload) != checksum) return damaged(path, "its checksum does not fit");
+    if (const auto problem = cbor_depth_problem(payload)) return damaged(path, "payload, " + *problem);
     return identities_of(json::from_cbor(payload));
   } catch (const std::exception& wrong) {
     return damaged(path, wrong.what());

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/sha.h>
 #include <sys/stat.h>
 
 #include <cmath>
@@ -20,6 +21,7 @@
 namespace cgsr::color {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using Bytes = std::vector<std::uint8_t>;
 
@@ -122,6 +124,24 @@ TEST_F(ModelFileFault, ATruncatedOneWhereverItEnds) {
     write(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)));
     ASSERT_NE(refusal(), "loaded") << size;
   }
+}
+
+// Of lists, and of text in chunks of chunks: a parser that recurses would exhaust its stack.
+TEST_F(ModelFileFault, ADeeplyNestedOne) {
+  for (const int head : {0x9F, 0x7F, 0x5F}) {
+    write(Bytes(4U << 20, static_cast<std::uint8_t>(head)));
+    EXPECT_THAT(refusal(), AllOf(HasSubstr(path()),
+                                 HasSubstr("offset 16: an item that holds others is 17 deep, expected at most 16")));
+  }
+  const Bytes payload(4U << 20, 0x9F);
+  Bytes digest(SHA256_DIGEST_LENGTH);
+  SHA256(payload.data(), payload.size(), digest.data());
+  using nlohmann::json;
+  write(json::to_cbor({{"format", "cgsr colour model"},
+                       {"version", kModelVersion},
+                       {"sha256", json::binary(digest)},
+                       {"payload", json::binary(payload)}}));
+  EXPECT_THAT(refusal(), HasSubstr("payload, offset 16: "));
 }
 
 TEST_F(ModelFileFault, ATooLargeOne) {

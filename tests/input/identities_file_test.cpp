@@ -92,6 +92,18 @@ TEST_F(IdentitiesFile, RefusesEveryDamageAndKeepsTheFileAside) {
   }
 }
 
+// A parser that recurses would exhaust its stack.
+TEST_F(IdentitiesFile, RefusesADeeplyNestedOne) {
+  for (const char head : {'\x9F', '\x7F'}) {
+    write(std::string(4U << 20, head));
+    const auto read = load_identities(file_);
+    ASSERT_FALSE(read);
+    EXPECT_NE(read.error().message.find("offset 16: an item that holds others is 17 deep, expected at most 16"),
+              std::string::npos)
+        << read.error().message;
+  }
+}
+
 // Text that is taken for CBOR of another type too.
 TEST_F(IdentitiesFile, SaysOfAnotherFileThatItIsNone) {
   write("garbage\n");

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "platform/cbor_depth.h"
 #include "platform/replace_file.h"
 
 namespace cgsr::color {
@@ -165,6 +166,8 @@ Result<void> save_model(const ColorModel& model, const std::string& path) {
 Result<ColorModel> load_model(const std::string& path) {
   const auto bytes = read_whole(path);
   if (!bytes) return tl::unexpected(bytes.error());
+  if (const auto problem = cbor_depth_problem(*bytes))
+    return fail(fmt::format("{}: not a colour model: {}", path, *problem));
   const json envelope = json::from_cbor(*bytes, true, false);
   if (envelope.is_discarded()) return fail(fmt::format("{}: not a colour model, or cut short", path));
   try {
@@ -178,6 +181,9 @@ Result<ColorModel> load_model(const std::string& path) {
     const Bytes payload = envelope.at("payload").get_binary();
     if (sha256_of(payload) != Bytes(envelope.at("sha256").get_binary())) {
       return fail(fmt::format("{}: the colour model is damaged (checksum)", path));
+    }
+    if (const auto problem = cbor_depth_problem(payload)) {
+      return fail(fmt::format("{}: the colour model is damaged: payload, {}", path, *problem));
     }
     ColorModel model = model_from(json::from_cbor(payload));
     if (auto defect = defect_of(model); !defect.empty())
