@@ -78,6 +78,12 @@ Result<void> write_through(const std::filesystem::path& path, std::initializer_l
   return {};
 }
 
+/// Some file systems refuse it for a folder: then the last change of a name is as durable as they make it.
+void sync_folder_of(const std::filesystem::path& path) {
+  const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.open()) ::fsync(folder.number());
+}
+
 /// The permissions of the file at `path`, or those that a new file gets.
 mode_t permissions_for(const std::filesystem::path& path) {
   struct stat status {};
@@ -104,9 +110,18 @@ Result<void> replace_file(const std::filesystem::path& path, std::initializer_li
     ::unlink(beside.c_str());
     return why;
   }
-  const Descriptor folder(::open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder.open())
-    ::fsync(folder.number());  // the file is whole either way; some file systems refuse it for a folder
+  sync_folder_of(path);  // the file is whole either way
+  return {};
+}
+
+Result<void> remove_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto target = std::filesystem::canonical(path, error);
+  if (error == std::errc::no_such_file_or_directory) return {};
+  if (error) return fail(fmt::format("{}: cannot be taken away: {}", path.string(), error.message()));
+  if (!std::filesystem::is_regular_file(target, error)) return {};
+  if (::unlink(target.c_str()) != 0) return refused(path, "cannot be taken away");
+  sync_folder_of(target);
   return {};
 }
 

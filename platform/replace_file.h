@@ -19,6 +19,11 @@ namespace cgsr {
 /// \return what could not be written, with the path and the system's reason. The old content is then still there (in place: it may not be).
 Result<void> replace_file(const std::filesystem::path& path, std::initializer_list<std::string_view> parts);
 
+/// Takes a file away so that a power cut does not bring it back: the name is removed and its folder synchronised. A symbolic link stays, what it
+/// points to goes; a device or a pipe stays. A file that is not there is no error. Ours.
+/// \return what speaks against it, with the path and the system's reason.
+Result<void> remove_file(const std::filesystem::path& path);
+
 /// Tests that replace_file() or opening `path` for writing can succeed, and leaves everything as it was: content, times, and no file where
 /// there was none.
 /// \return what speaks against it: a folder of that name, a folder that is missing or may not be written, a read-only file system.

@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "platform/replace_file.h"
 #include "src/input/pose_file.h"
 #include "src/output/overlay.h"
 #include "src/output/text_file.h"
@@ -51,6 +52,10 @@ Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camer
   boot.prior = prior_on_floor(X_WR * X_RC, start.sigma_m, start.sigma_deg * kDegree);
   boot.message = "the robot's file";
   return boot;
+}
+
+Result<void> withdraw_pose(const std::filesystem::path& file) {
+  return remove_file(file);
 }
 
 Result<void> leave_pose(const std::filesystem::path& file, const geometry::Pose& X_WR) {

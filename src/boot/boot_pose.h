@@ -23,6 +23,11 @@ struct BootPose {
 Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camera& camera, const geometry::Pose& X_RC,
                            const ImageView& first_image);
 
+/// Takes away what the last run left, which is outdated once the robot moves: a run that ends lost, is killed or loses power must leave no
+/// pose to the next one. To be called after boot_pose() and before the first command to the base. A file that is not there is no error. Ours.
+/// \return why it stays, with the file: the run must then not begin.
+Result<void> withdraw_pose(const std::filesystem::path& file);
+
 /// Leaves the robot's pose on its floor for the next run, X_WR; whole or not at all.
 Result<void> leave_pose(const std::filesystem::path& file, const geometry::Pose& X_WR);
 

@@ -57,6 +57,10 @@ Robot::Check Robot::check(const config::Robot& config) {
 }
 
 Result<void> Robot::run(StopRequest& stop) {
+  const std::string& last_pose = state_.setup.config.localization.start.file;
+  if (!last_pose.empty()) {
+    if (auto withdrawn = withdraw_pose(last_pose); !withdrawn) return withdrawn;
+  }
   Result<void> done = state_.setup.live() ? run_live(state_, stop) : run_lock_step(state_, stop);
   state_.outputs.sinks.finish();
   if (auto left = leave_pose_for_next_run(state_); !left && done) return left;

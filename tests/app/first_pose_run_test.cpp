@@ -11,7 +11,9 @@
 namespace cgsr::app::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class RunAnywhere : public ::testing::Test {
  protected:
@@ -74,6 +76,8 @@ TEST_F(RunAnywhere, LostForLongByTheLastRunsPoseItFindsItselfAndDrivesOn) {
   EXPECT_LE(summary["pose"]["worst_cm"], 5.0);
   EXPECT_LE(summary["pose"]["worst_deg"], 1.5);
   EXPECT_GT(summary["outputs"]["decision"]["images"]["state"]["on its way"], 30) << "its task waits for ever";
+  EXPECT_THAT(read_text(scratch_ / "last.csv"), AllOf(HasSubstr("tx,ty,tz"), Not(HasSubstr("1.2,3.2,0,1"))))
+      << "it knew its pose at its end";
 }
 
 TEST_F(RunAnywhere, RefusesAFileWithWhichItCannotBe) {

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <string>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -143,6 +145,35 @@ TEST_F(RunReplay, ALostCameraIsAFailure) {
     EXPECT_EQ(outcome.exit_code, 1) << config;
     EXPECT_THAT(outcome.errors, HasSubstr("error: camera: ")) << config;
   }
+}
+
+// What the last run left is outdated once the robot has moved: only a run that ends knowing its pose leaves one.
+TEST_F(RunReplay, ARunThatIsKilledOrEndsLostLeavesNoPoseToTheNext) {
+  const auto pose = scratch_ / "last.csv";
+  const auto csv = scratch_ / "run.csv";
+  write_text(scratch_ / "stores.toml", extended(live_config(), {{"localization.start.file", quoted(pose)}}));
+  for (const int signal : {SIGKILL, SIGTERM}) {
+    write_text(pose, "tx,ty,tz,qw,qx,qy,qz\n1.2,3.2,0,1,0,0,0\n");
+    std::filesystem::remove(csv);
+    RunningCgsr running(arguments(scratch_ / "stores.toml", {"--csv", csv, "--force"}));
+    while (read_text(csv).size() < 1000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    running.send(signal);
+    const auto outcome = running.wait();
+    EXPECT_EQ(outcome.exit_code, signal == SIGKILL ? 128 + SIGKILL : 0) << outcome.errors;
+    EXPECT_FALSE(std::filesystem::exists(pose)) << "signal " << signal;
+  }
+}
+
+// Nothing moves in it, and the robot needs the pose for its run.
+TEST_F(RunReplay, ACheckLeavesTheLastRunsPoseWhereItIs) {
+  const auto pose = scratch_ / "last.csv";
+  write_text(pose, "tx,ty,tz,qw,qx,qy,qz\n1.2,3.2,0,1,0,0,0\n");
+  write_text(scratch_ / "stores.toml", extended(shipped_, {{"localization.start.file", quoted(pose)},
+                                                           {"camera.replay.path", quoted(scratch_ / "images")},
+                                                           {"run.model", quoted(scratch_ / "m")}}));
+  const auto outcome = run_cgsr({"check", "--config", scratch_ / "stores.toml"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_TRUE(std::filesystem::exists(pose));
 }
 
 // Whenever SIGTERM comes, from the first moment of the boot on: the program ends within 200 ms, in order, standing still. The quickest of

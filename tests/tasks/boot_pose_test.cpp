@@ -98,6 +98,27 @@ TEST(BootPose, WhatTheLastRunLeftComesFirst) {
             1e-5);
 }
 
+// A run takes the pose away before it moves: killed, it leaves none.
+TEST(BootPose, WhatWasWithdrawnIsNotBelievedAgain) {
+  const test::ScratchFolder scratch;
+  const auto file = scratch / "last-pose.csv";
+  const auto link = scratch / "link.csv";
+  std::filesystem::create_symlink("last-pose.csv", link);
+  config::StartPose start;
+  start.x_m = 1.0;
+  start.file = link.string();
+  EXPECT_TRUE(withdraw_pose(link)) << "the first run finds none";
+  for (int run = 0; run < 2; ++run) {
+    ASSERT_TRUE(leave_pose(link, geometry::pose_on_floor(4.0, -2.0, 0.5)));
+    ASSERT_TRUE(withdraw_pose(link));
+    EXPECT_FALSE(std::filesystem::exists(file));
+    EXPECT_TRUE(std::filesystem::is_symlink(link)) << "it says where the next pose goes";
+    const auto boot = boot_pose(start, {}, mount(), {});
+    ASSERT_TRUE(boot) << boot.error().message;
+    EXPECT_EQ(boot->message, "the robot's file");
+  }
+}
+
 TEST(BootPoseFault, ADamagedFileIsSaidWithItsLine) {
   const test::ScratchFolder scratch;
   const auto file = scratch / "bad-pose.csv";
