@@ -3,25 +3,20 @@
 #include <functional>
 #include <utility>
 
-#include "platform/stop.h"
-
 namespace cgsr::boot {
-namespace {
-
-constexpr int kInterruptedWhileLoading = 3;  // as cgsr's other commands answer a signal before their end
-
-}  // namespace
 
 void add_robot_steps(BootPlan& plan, RobotState& state) {
   const auto add = [&](const char* name, std::vector<std::string> needs, Result<void> (*step)(RobotState&),
                        std::function<void()> undo = {}) {
     plan.add({name, std::move(needs), [&state, step] { return step(state); }, std::move(undo)});
   };
-  // Work that cannot be interrupted and may take seconds: a map, a plug-in, an image.
+  // Work that cannot be interrupted and may take seconds: a map, a plug-in. A first image is waited for in order.
   const auto load = [&](const char* name, std::vector<std::string> needs, Result<void> (*step)(RobotState&)) {
     const auto run = [&state, step] {
-      const EndAtOnceOnSignals loading(kInterruptedWhileLoading);
-      return step(state);
+      state.loading.emplace(kInterruptedWhileLoading);
+      auto done = step(state);
+      state.loading.reset();
+      return done;
     };
     plan.add({name, std::move(needs), run});
   };

@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kTriesInLockStep = 30;
 constexpr Duration kPatience = seconds(5.0);
-constexpr Duration kPatienceOfOneTry = seconds(1.0);  // of a service: the watchdog is pinged between them
+constexpr Duration kPatienceOfOneLook = seconds(0.1);  // in which a stop signal is noticed
+constexpr Duration kPatienceOfOneTry = seconds(1.0);   // of a service: the watchdog is pinged between them
 
 }  // namespace
 
@@ -32,13 +33,23 @@ Result<ImageLease> RobotState::first_image() {
   }
   const auto wait_for_image = [&](Duration patience) {
     const MonoTime end = clocks.real.now() + patience;
-    return first_good_image(camera, [&]() -> std::optional<MonoTime> {
-      return clocks.real.now() < end ? std::optional(end) : std::nullopt;
+    return first_good_image(camera, [&, end]() -> std::optional<MonoTime> {
+      const MonoTime now = clocks.real.now();
+      if (now >= end || StopOnSignals::received() != 0) return std::nullopt;
+      return std::min(end, now + kPatienceOfOneLook);
     });
   };
+  // The camera streams and is to be stopped in order: a signal ends the wait, not the process.
+  const bool was_loading = loading.has_value();
+  loading.reset();
   StopRequest* const waits = setup.options.wait_for_devices;
-  if (waits == nullptr || !setup.config.real_camera()) return wait_for_image(kPatience);
-  return open_when_there("first image", clocks.real, *waits, [&] { return wait_for_image(kPatienceOfOneTry); });
+  auto image =
+      waits == nullptr || !setup.config.real_camera()
+          ? wait_for_image(kPatience)
+          : open_when_there("first image", clocks.real, *waits, [&] { return wait_for_image(kPatienceOfOneTry); });
+  if (StopOnSignals::received() != 0) return fail("the first image was waited for when a signal came");
+  if (was_loading) loading.emplace(kInterruptedWhileLoading);
+  return image;
 }
 
 tasks::VisionSurroundings RobotState::surroundings() const {

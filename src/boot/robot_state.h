@@ -24,6 +24,9 @@
 
 namespace cgsr::boot {
 
+/// The exit code of a program that a signal ends while it loads, as cgsr's other commands answer a signal before their end. Ours.
+inline constexpr int kInterruptedWhileLoading = 3;
+
 /// What the command line adds to a robot's file.
 struct RunOptions {
   bool dry_run = false;
@@ -111,9 +114,11 @@ struct RobotState {
   tasks::Links links;
   Vision vision;
   Outputs outputs;
+  std::optional<EndAtOnceOnSignals> loading;  ///< while a step of the boot does what cannot be interrupted.
 
   /// The next image before the loops run: what is learned from, or where a marker is looked for. Damaged images are passed
-  /// over, for 5 s or, in lock-step, 30 images; a service waits until a stop is requested.
+  /// over, for 5 s or, in lock-step, 30 images; a service waits until a stop is requested. Live, a stop signal ends the wait within
+  /// 0.1 s and is an error: the camera is then closed in order, whatever else `loading` says.
   Result<ImageLease> first_image();
   [[nodiscard]] tasks::SwitchLines lines() const {
     return {setup.config.switches.arming_line, setup.config.switches.lamps()};
