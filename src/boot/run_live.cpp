@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -42,6 +45,10 @@ class LiveLoops {
     capture_beat_ = heartbeats.add("capture", 3 * capture.period() + seconds(0.5), now);
     vision_beat_ = heartbeats.add("vision", 3 * capture.period() + seconds(0.5), now);
     motion_beat_ = heartbeats.add("motion", seconds(0.2), now);
+    // Lamps that hang cost the mask; an arming line that hangs has to be noticed.
+    if (!state.lines().arming.empty()) {
+      switch_beat_ = heartbeats.add("switches", tasks::kMaxArmingReportAge, now);
+    }
   }
 
   void capture() {
@@ -85,6 +92,7 @@ class LiveLoops {
       look.wait();
       advance_simulation();
       if (const auto news = switches_.step()) spdlog::warn("switches: {}", *news);
+      if (switch_beat_) heartbeats.beat(*switch_beat_, clock_.now());
     }
   }
 
@@ -128,6 +136,7 @@ class LiveLoops {
   std::size_t capture_beat_ = 0;
   std::size_t vision_beat_ = 0;
   std::size_t motion_beat_ = 0;
+  std::optional<std::size_t> switch_beat_;  // none: there is no arming line
 };
 
 Result<void> start_threads(ThreadTable& threads, LiveLoops& loops, tasks::Links& links) {
@@ -150,20 +159,31 @@ Result<void> start_threads(ThreadTable& threads, LiveLoops& loops, tasks::Links&
   return start(runtime::kCaptureThread, [&loops] { loops.capture(); });
 }
 
+/// Names each thread that falls silent once, until it is heard again.
+class SilenceLog {
+ public:
+  void take(const std::vector<Heartbeats::Silence>& silent) {
+    for (const auto& [name, lasting] : silent) {
+      if (std::find(named_.begin(), named_.end(), name) != named_.end()) continue;
+      spdlog::critical("thread {} silent for {:.1f} s: the watchdog is not pinged", name, to_seconds(lasting));
+    }
+    named_.clear();
+    for (const auto& thread : silent) named_.push_back(thread.name);
+  }
+
+ private:
+  std::vector<std::string_view> named_;
+};
+
 /// Until somebody requests a stop or the end comes. A thread that is silent is named once, and the watchdog is not pinged.
 /// What the camera says of itself (unplugged, back, damaged images) goes to the log, a line in kCameraMessageGap at most.
 void supervise_until(MonoTime end, Heartbeats& heartbeats, const hal::Camera& camera, RealClock& clock,
                      StopRequest& stop) {
-  bool silence_reported = false;
+  SilenceLog silences;
   MessageRate camera_messages(kCameraMessageGap);
   while (!stop.wait_until(std::min(end, clock.now() + kSupervisorPeriod))) {
     if (clock.now() >= end) break;
-    const auto silent = supervise(heartbeats, clock.now());
-    if (!silent.empty() && !silence_reported) {
-      spdlog::critical("thread {} silent for {:.1f} s: the watchdog is not pinged", silent.front().name,
-                       to_seconds(silent.front().lasting));
-    }
-    silence_reported = !silent.empty();
+    silences.take(supervise(heartbeats, clock.now()));
     const std::string problem = camera.last_problem();
     if (camera_messages.take(problem, clock.now())) {
       spdlog::warn("{}", problem);

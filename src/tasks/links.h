@@ -10,6 +10,7 @@
 #include "pipeline/stages/switchboard.h"
 #include "platform/image_lease.h"
 #include "platform/ring.h"
+#include "platform/time.h"
 #include "platform/wake_up.h"
 #include "src/sinks/records.h"
 
@@ -22,6 +23,27 @@ struct CaptureCounts {
   std::atomic<std::uint64_t> no_slot{0};
   std::atomic<std::uint64_t> corrupt{0};
   std::atomic<std::uint64_t> disconnected{0};
+};
+
+/// A report of the arming line that is older than this counts as a switch that is off: ten looks of the switch worker.
+/// Ours.
+inline constexpr Duration kMaxArmingReportAge = seconds(0.5);
+
+/// When the switch worker last read the arming line, whatever the line answered. A worker that hangs in a driver must not
+/// leave the line's last state in force. Without a first report there is no arming line, and none is ever old.
+///
+/// Threads: report() from the switch worker, the first before any thread starts; is_old() from the motion thread too.
+/// Relaxed: the time is the message, and the ring of arm requests orders what it guards. Ours.
+class ArmingReport {
+ public:
+  void report(MonoTime now) { at_.store(now, std::memory_order_relaxed); }
+
+  [[nodiscard]] bool is_old(MonoTime now) const {
+    return now - kMaxArmingReportAge > at_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  std::atomic<MonoTime> at_{MonoTime::max()};
 };
 
 /// Everything that tasks share: the arrows of docs/architecture.md, one member each. Every ring has one producer and one consumer.
@@ -39,6 +61,7 @@ struct Links {
   Ring<hal::Odometry, 64, Overflow::kDiscard> odometry;  ///< motion -> vision.
 
   Ring<ArmRequest, 8> arm_requests;  ///< switch worker -> motion.
+  ArmingReport arming_report;        ///< switch worker -> motion.
 
   Ring<stages::SwitchRequest, 8> switch_requests;                ///< vision -> switch worker.
   Ring<stages::SwitchAnswer, 8> switch_answers;                  ///< switch worker -> vision.

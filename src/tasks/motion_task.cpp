@@ -6,7 +6,7 @@ void MotionTask::step(MonoTime now) {
   MotionInputs inputs;
   inputs.goal = newest_goal(now);
   inputs.images_in_time = links_.images_in_time.load(std::memory_order_relaxed);
-  inputs.safety_chain_ok = links_.motion_stop.look() == 0;
+  inputs.safety_chain_ok = links_.motion_stop.look() == 0 && !links_.arming_report.is_old(now);
   inputs.stop = stop_.requested();
   if (const auto request = links_.arm_requests.pop()) {
     inputs.request = *request;

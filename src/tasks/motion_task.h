@@ -8,7 +8,8 @@
 
 namespace cgsr::tasks {
 
-/// Steps the motion loop with what has arrived since the last cycle.
+/// Steps the motion loop with what has arrived since the last cycle. An arming line of which nothing was heard for
+/// kMaxArmingReportAge counts as a fault of the safety chain: zero, disarmed, and not armed again before it is heard.
 class MotionTask {
  public:
   /// \param latency  a goal arrives that long after its image's stamp: zero live, where it arrives when it does.

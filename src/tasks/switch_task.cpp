@@ -15,6 +15,12 @@ std::optional<std::string> SwitchTask::step() {
 std::optional<std::string> SwitchTask::watch_arming() {
   if (lines_.arming.empty()) return std::nullopt;
   const auto level = switches_.read(lines_.arming);
+  const MonoTime now = clock_.now();
+  if (level && level_ && links_.arming_report.is_old(now)) {  // motion has stopped the robot meanwhile
+    level_.reset();
+    silent_ = true;
+  }
+  links_.arming_report.report(now);  // before a request, which motion would refuse else
   if (!level) {
     level_.reset();
     // A request that finds no room is repeated at the next look.

@@ -21,12 +21,14 @@ struct SwitchLines {
 };
 
 /// Watches the arming line, whose edges are requests to arm and disarm, and switches lamps as vision asks, acknowledging each with the time at which it
-/// was done. A line that does not answer disarms; one that answers again is as at boot: its level does not arm, its next rising edge does. Not real-time: a
-/// line may block for milliseconds.
+/// was done. A line that does not answer disarms; one that answers again is as at boot: its level does not arm, its next rising edge does. So is one that was
+/// not read for kMaxArmingReportAge, for a call hung. Not real-time: a line may block for milliseconds.
 class SwitchTask {
  public:
   SwitchTask(hal::Switches& switches, SwitchLines lines, const Clock& clock, Links& links)
-      : switches_(switches), lines_(std::move(lines)), clock_(clock), links_(links) {}
+      : switches_(switches), lines_(std::move(lines)), clock_(clock), links_(links) {
+    if (!lines_.arming.empty()) links_.arming_report.report(clock_.now());
+  }
 
   /// \return what there is to report of the arming line, once each: it does not answer and the robot is disarmed, or it answers again.
   std::optional<std::string> step();

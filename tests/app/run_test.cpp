@@ -1,4 +1,7 @@
 // The robot's service, from outside: repeatable in lock-step, ordered in its end.
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -174,6 +177,47 @@ TEST_F(RunReplay, ACheckLeavesTheLastRunsPoseWhereItIs) {
   const auto outcome = run_cgsr({"check", "--config", scratch_ / "stores.toml"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_TRUE(std::filesystem::exists(pose));
+}
+
+/// \return the number of the program's thread of that name, once there is one.
+pid_t thread_named(const std::string& name, RunningCgsr& running) {
+  const std::filesystem::path threads = "/proc/" + std::to_string(running.process()) + "/task";
+  while (!running.ended()) {
+    for (const auto& thread : std::filesystem::directory_iterator(threads)) {
+      if (read_text(thread.path() / "comm") == name + "\n") return std::stoi(thread.path().filename());
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return -1;
+}
+
+// The thread that reads the arming line stands still as in a driver that does not return, and goes on later.
+TEST_F(RunReplay, ASwitchWorkerThatHangsIsNamedOnceAndStopsTheWheels) {
+  write_text(scratch_ / "armed.toml",
+             extended(live_config(), {{"switches.kind", quoted("dummy")}, {"switches.arming_line", quoted("arming")}}));
+  const auto status_file = scratch_ / "status.json";
+  RunningCgsr running(arguments(scratch_ / "armed.toml", {"--log-level", "info", "--status", status_file}));
+  const pid_t worker = thread_named("switches", running);
+  ASSERT_GT(worker, 0) << running.wait().errors;
+  const auto armed = [&] { return read_text(status_file).find("\"armed\":true") != std::string::npos; };
+  while (!armed() && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  if (ptrace(PTRACE_SEIZE, worker, nullptr, nullptr) != 0) {
+    GTEST_SKIP() << "SKIPPED: no thread of another process may be stopped here";
+  }
+  ASSERT_EQ(ptrace(PTRACE_INTERRUPT, worker, nullptr, nullptr), 0);
+  int status = 0;
+  ASSERT_EQ(waitpid(worker, &status, __WALL), worker);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1200));
+  ASSERT_EQ(ptrace(PTRACE_DETACH, worker, nullptr, nullptr), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  running.send(SIGTERM);
+  const auto outcome = running.wait();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto first = outcome.errors.find("thread switches silent for 0.");
+  ASSERT_NE(first, std::string::npos) << outcome.errors;
+  EXPECT_EQ(outcome.errors.find("thread switches silent", first + 1), std::string::npos) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("motion: a stage of the safety chain is in fault"));
+  EXPECT_THAT(outcome.errors, HasSubstr("line 'arming' answers again"));
 }
 
 // Whenever SIGTERM comes, from the first moment of the boot on: the program ends within 200 ms, in order, standing still. The quickest of

@@ -2,11 +2,16 @@
 #include "hal/dummy/dummy_switches.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "hal/dummy/kinematic_drive.h"
 #include "src/tasks/capture_task.h"
+#include "src/tasks/motion_task.h"
 #include "src/tasks/switch_task.h"
 #include "tests/tasks/painted_camera.h"
 
@@ -153,6 +158,91 @@ TEST_F(SwitchTaskOf, ALineThatAnswersAgainArmsByItsNextEdgeOnly) {
   EXPECT_EQ(after_step(), ArmRequest::kDisarm);
   switches_.press("arm", true);
   EXPECT_EQ(after_step(), ArmRequest::kArm);
+}
+
+/// The switch worker and the motion loop, a control cycle after another; the worker may hang.
+class ArmingReportFault : public ::testing::Test {
+ protected:
+  ArmingReportFault() {
+    EXPECT_TRUE(switches_.start());
+    EXPECT_TRUE(motion_loop_.start());
+    links_.images_in_time = true;
+  }
+
+  static MotionParameters anywhere() {
+    MotionParameters parameters;
+    parameters.keep_in.enabled = false;
+    return parameters;
+  }
+
+  /// \return what the wheels were told last.
+  MotionStatus run(double duration_s, bool hung = false) {
+    for (const MonoTime end = now_ + seconds(duration_s); now_ < end; now_ += kMotionPeriod) {
+      clock_.advance_to(now_);
+      if (!hung && now_ >= next_look_) {
+        if (auto news = worker_.step()) news_.push_back(*news);
+        next_look_ = now_ + kSwitchPeriod;
+      }
+      EXPECT_TRUE(links_.goals.push(Goal{{0.2, 0.0}, now_}));
+      motion_.step(now_);
+      while (const auto status = links_.motions.pop()) status_ = *status;
+    }
+    return status_;
+  }
+  void press(bool on) { switches_.press("arm", on); }
+
+  hal::DummySwitches switches_{{{"arm", hal::LineDirection::kInput}}};
+  Links links_;
+  SimulatedClock clock_;
+  StopRequest stop_;
+  SwitchTask worker_{switches_, {"arm", {}}, clock_, links_};
+  MotionLoop motion_loop_{std::make_unique<hal::KinematicDrive>(), anywhere(), MotionLoop::Mode::kLive};
+  MotionTask motion_{motion_loop_, stop_, Duration::zero(), false, links_};
+  MonoTime now_{};
+  MonoTime next_look_{};
+  MotionStatus status_;
+  std::vector<std::string> news_;
+};
+
+TEST_F(ArmingReportFault, AWorkerThatHangsStopsTheRobotUntilTheSwitchIsOffAndOn) {
+  run(1.5);
+  press(true);
+  ASSERT_GT(run(0.5).commanded.forward_mps, 0.0);
+
+  EXPECT_TRUE(run(to_seconds(kMaxArmingReportAge) - 0.1, true).armed) << "a driver may block for a while";
+  const MotionStatus hung = run(0.2, true);
+  EXPECT_FALSE(hung.armed);
+  EXPECT_EQ(hung.commanded.forward_mps, 0.0);
+  EXPECT_EQ(hung.cause, StopCause::kSafetyFault);
+  EXPECT_TRUE(news_.empty());
+
+  const MotionStatus reports_again = run(2.0);
+  EXPECT_FALSE(reports_again.armed) << "its level does not arm";
+  EXPECT_EQ(reports_again.cause, StopCause::kDisarmed);
+  ASSERT_EQ(news_.size(), 1u);
+  EXPECT_NE(news_.front().find("answers again"), std::string::npos) << news_.front();
+  press(false);
+  EXPECT_FALSE(run(0.2).armed);
+  press(true);
+  EXPECT_TRUE(run(0.2).armed);
+}
+
+// Switched on while the worker hung: nobody knows when.
+TEST_F(ArmingReportFault, AnEdgeThatFellIntoTheHangDoesNotArm) {
+  run(1.5);
+  run(2.0, true);
+  press(true);
+  EXPECT_FALSE(run(0.5).armed);
+  press(false);
+  run(0.1);
+  press(true);
+  EXPECT_TRUE(run(0.1).armed);
+}
+
+TEST_F(ArmingReportFault, ALineThatWasNeverReadDoesNotLetArmByCommandEither) {
+  run(1.5, true);
+  ASSERT_TRUE(links_.arm_requests.push(ArmRequest::kArm));
+  EXPECT_FALSE(run(0.1, true).armed);
 }
 
 }  // namespace
