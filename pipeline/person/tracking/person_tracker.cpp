@@ -1,5 +1,8 @@
 #include "pipeline/person/tracking/person_tracker.h"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace cgsr::person {
 namespace {
 
@@ -54,11 +57,13 @@ PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)
   feedback_.add(faces_, 0);
   feedback_.add(face_colors_, 1);
   feedback_.add(shirts_, 1);
+  sizes_.reserve(static_cast<std::size_t>(parameters.shirt.colors.max_people) + 1);
 }
 
 void PersonTracker::forget(Label person) {
   shirts_.forget(person);
   face_colors_.forget(person);
+  std::erase_if(sizes_, [person](const Size& one) { return one.person == person; });
 }
 
 bool PersonTracker::face_is_due() const {
@@ -150,7 +155,20 @@ bool PersonTracker::is_of_stranger(const PersonSighting& sighting) const {
   return sighting.source == PersonSource::kFaceColor && !intersection(stranger_->box, sighting.box).empty();
 }
 
+// Of people whose shirts are known, and of whoever was measured last: bounded by the number of shirts.
+PersonTracker::Size& PersonTracker::size_of(Label person) {
+  if (const auto known = std::ranges::find(sizes_, person, &Size::person); known != sizes_.end()) return *known;
+  std::erase_if(sizes_, [this](const Size& one) { return !shirts_.knows(one.person); });
+  return sizes_.emplace_back(Size{.person = person});
+}
+
 // The height of a shirt changes least when its person turns.
+double PersonTracker::face_px_of_shirt(const Box& shirt, Label person) const {
+  const auto size = std::ranges::find(sizes_, person, &Size::person);
+  if (size == sizes_.end()) return 0.0;
+  return size->shirt_per_face > 0.0 ? shirt.height / size->shirt_per_face : size->face_px;
+}
+
 void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) {
   constexpr double kNew = 0.1;  // share of a new ratio
   if (sighting.source == PersonSource::kFaceColor) {
@@ -162,17 +180,19 @@ void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) 
     return;
   }
   if (sighting.source == PersonSource::kShirt) {
-    sighting.face_px = shirt_per_face_ > 0.0 ? sighting.box.height / shirt_per_face_ : face_px_;
+    sighting.face_px = face_px_of_shirt(sighting.box, *sighting.person);
     return;
   }
-  face_px_ = sighting.face_px =
+  Size& size = size_of(*sighting.person);
+  size.face_px = sighting.face_px =
       sighting.source == PersonSource::kMarker ? input.marker->face.width : sighting.box.width;
   const Box& shirt = shirts_.box();
   const auto& answer = feedback_.members()[kShirt].answer;
   const bool cut = shirt.y + shirt.height >= input.image.height_px;
   if (!answer || answer->label != sighting.person || cut) return;
   const double ratio = shirt.height / sighting.face_px;
-  shirt_per_face_ = shirt_per_face_ > 0.0 ? (1.0 - kNew) * shirt_per_face_ + kNew * ratio : ratio;
+  double& known = size.shirt_per_face;
+  known = known > 0.0 ? (1.0 - kNew) * known + kNew * ratio : ratio;
 }
 
 }  // namespace cgsr::person

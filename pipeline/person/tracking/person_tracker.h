@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "pipeline/person/colors/color_labels.h"
 #include "pipeline/person/context.h"
@@ -87,8 +88,16 @@ class PersonTracker {
   [[nodiscard]] const FaceColorClassifier& face_colors() const { return face_colors_; }
 
  private:
+  // How large somebody was when he was measured last; everybody's own, for a child's shirt is not a man's.
+  struct Size {
+    Label person = 0;
+    double face_px = 0.0;  // width of the last face that identified the person, or of what would be it by the marker
+    double shirt_per_face = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
+  };
   void look_up(const ImageView& image, bool due);
   void locate(const PersonImage& input, Label person, PersonSighting& sighting) const;
+  Size& size_of(Label person);
+  [[nodiscard]] double face_px_of_shirt(const Box& shirt, Label person) const;
   void measure(const PersonImage& input, PersonSighting& sighting);
   [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
   void confirm_head(const PersonImage& input, const PersonSighting& sighting);
@@ -103,8 +112,7 @@ class PersonTracker {
   FeedbackClassifier<PersonImage> feedback_;
   int since_face_ = 0;                      // images since one was looked for
   std::optional<PersonSighting> stranger_;  // who was decided on by face when faces were last looked for
-  double face_px_ = 0.0;  // width of the last face that identified the person, or of what would be it by the marker
-  double shirt_per_face_ = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
+  std::vector<Size> sizes_;                 // of those whose shirts are known, and of whoever was measured last
 };
 
 }  // namespace cgsr::person

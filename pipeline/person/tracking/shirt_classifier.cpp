@@ -103,6 +103,7 @@ ShirtClassifier::ShirtClassifier(ColorLabels& labels, const ShirtParameters& par
       light_(parameters.light),
       map_(imaging::kColorCodes, 0),
       followed_(parameters.place) {
+  last_faces_.reserve(static_cast<std::size_t>(parameters.colors.max_people) + 1);
   prepare();
 }
 
@@ -117,10 +118,21 @@ bool ShirtClassifier::prepare() {
   return true;
 }
 
-bool ShirtClassifier::is_plausible(const Box& shirt, double area_px2) const {
-  if (!last_face_) return false;
-  return area_px2 >= parameters_.min_area * last_face_->area() &&
-         shirt.width <= parameters_.max_width * last_face_->width;
+// By the person's own face: somebody else may be farther away, or smaller.
+bool ShirtClassifier::is_plausible(Label person, const Box& shirt, double area_px2) const {
+  const auto last = std::ranges::find(last_faces_, person, &PersonHead::person);
+  if (last == last_faces_.end()) return false;
+  return area_px2 >= parameters_.min_area * last->box.area() && shirt.width <= parameters_.max_width * last->box.width;
+}
+
+void ShirtClassifier::remember_face(Label person, const Box& face) {
+  const auto last = std::ranges::find(last_faces_, person, &PersonHead::person);
+  if (last != last_faces_.end()) {
+    last->box = face;
+    return;
+  }
+  std::erase_if(last_faces_, [this](const PersonHead& one) { return !colors_.knows(one.person); });
+  last_faces_.push_back({person, face});
 }
 
 // The largest below the head is the shirt; sleeves and what a light has torn off are smaller.
@@ -133,7 +145,7 @@ bool ShirtClassifier::find_below(const PersonHead& head, int image_height_px) {
     if (order_[blob.label - std::size_t{1}] != head.person) continue;
     const Box box = in_camera(blob, left, top);
     const bool hangs = box.y <= head.box.y + (1.0 + kLowest) * head.box.height;
-    if (!hangs || !is_plausible(box, camera_area(blob))) return false;
+    if (!hangs || !is_plausible(head.person, box, camera_area(blob))) return false;
     box_ = box;
     return true;
   }
@@ -149,7 +161,7 @@ std::optional<Label> ShirtClassifier::find(const PersonImage& input) {
   for (const Blob& blob : blobs_.largest(image, static_cast<std::uint16_t>(order_.size()))) {
     const Box box = in_camera(blob);
     const Label person = order_[blob.label - std::size_t{1}];
-    if (!colors_.knows(person) || !is_plausible(box, camera_area(blob))) continue;
+    if (!colors_.knows(person) || !is_plausible(person, box, camera_area(blob))) continue;
     if (head && person == input.head->person) {
       elsewhere_ = box;
       continue;
@@ -196,7 +208,7 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
     return by_blob;
   }
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
-  if (!is_plausible(trunk, trunk.area())) return by_blob;
+  if (!is_plausible(*followed_person_, trunk, trunk.area())) return by_blob;
   const bool supposed = supposed_ && followed_person_ == person_;
   if (supposed && overlap(trunk, place_) < kSamePlace) return by_blob;
   if (!supposed) learn_at_place(input, trunk);
@@ -338,13 +350,14 @@ void ShirtClassifier::observe(const PersonImage& input) {
   seen_ = teacher->person;
   follow_from(*teacher);
   if (!seen_) return;
-  last_face_ = teacher->face;
+  remember_face(*seen_, teacher->face);
   if (!colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn) learn(input, *teacher);
 }
 
 void ShirtClassifier::forget(Label person) {
   colors_.forget(person);
   light_.forget(person);
+  std::erase_if(last_faces_, [person](const PersonHead& one) { return one.person == person; });
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
   if (person_ == person) person_.reset();

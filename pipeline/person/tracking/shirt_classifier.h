@@ -98,7 +98,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   };
   static std::optional<Teacher> teacher_of(const PersonImage& input);
   void learn(const PersonImage& input, const Teacher& teacher);
-  [[nodiscard]] bool is_plausible(const Box& shirt, double area_px2) const;
+  [[nodiscard]] bool is_plausible(Label person, const Box& shirt, double area_px2) const;
+  void remember_face(Label person, const Box& face);
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
   std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
@@ -118,9 +119,10 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::vector<Label> order_;  // the people by their labels in the map; some may be forgotten since
   bool map_is_due_ = true;    // something was learned since it was made, or the light has changed
   BlobFinder blobs_;
-  PersonImage last_;              // what train() learns from; its pixels are valid until the next classify()
-  std::optional<Box> last_face_;  // of a recognised person, or where it would be by the marker
-  std::optional<Label> seen_;     // in the images before this one
+  PersonImage last_;  // what train() learns from; its pixels are valid until the next classify()
+  // Of everybody whose shirt is known, and of whoever was recognised last: the last face, or where it would be by the marker.
+  std::vector<PersonHead> last_faces_;
+  std::optional<Label> seen_;  // in the images before this one
   int seen_images_ = 0;
   Box box_;
   Box elsewhere_;  // has the colours of the person whose head is known, and is not below it; empty: nothing has
