@@ -211,6 +211,23 @@ TEST(PersonTracker, TellsHowFarAwayAShirtIsByTheSizeOfItsOwnPerson) {
   }
 }
 
+// He comes back nearer, so that a border of the image cuts the shirt: 1.5 times as large, and less of its height is in view than from afar.
+TEST(PersonTracker, TellsHowFarAwayAShirtIsThatTheImageCuts) {
+  PersonTracker tracker(by_blobs());
+  measure_both(tracker);
+  for (const double top : {-90.0, 150.0}) {
+    const Picture empty;
+    for (int image = 0; image < 6; ++image) tracker.update({empty.view()});
+    Picture picture;
+    const Box near{100, top, 1.5 * kShirtBox.width, 1.5 * kShirtBox.height};
+    picture.fill(intersection(near, {0, 0, kWidth, kHeight}), kRed);
+    PersonSighting turned;
+    for (int image = 0; image < 4; ++image) turned = tracker.update({picture.view()});
+    ASSERT_EQ(turned.source, PersonSource::kShirt);
+    EXPECT_NEAR(turned.face_px, 1.5 * kFaceBox.width, 3.0) << "its upper edge at " << top;
+  }
+}
+
 TEST(PersonTracker, KeepsTheSizesOfThoseWhomItKnowsHoweverManyPass) {
   PersonTracker tracker(by_blobs());
   measure_both(tracker);

@@ -8,6 +8,20 @@ namespace {
 
 constexpr std::size_t kMarker = 0, kFace = 1, kFaceColor = 2, kShirt = 3;  // places among the members
 
+// Blobs are found in pixels of ColorLabels::kFactor: the last ones may end before the border.
+bool is_cut_in_height(const Box& box, const ImageView& image) {
+  return box.y <= 0.0 || box.y + box.height > image.height_px - ColorLabels::kFactor;
+}
+
+bool is_cut_in_width(const Box& box, const ImageView& image) {
+  return box.x <= 0.0 || box.x + box.width > image.width_px - ColorLabels::kFactor;
+}
+
+void follow_ratio(double& known, double now) {
+  constexpr double kNew = 0.1;  // share of a new ratio
+  known = known > 0.0 ? (1.0 - kNew) * known + kNew * now : now;
+}
+
 }  // namespace
 
 std::string_view to_string(PersonSource source) {
@@ -162,25 +176,26 @@ PersonTracker::Size& PersonTracker::size_of(Label person) {
   return sizes_.emplace_back(Size{.person = person});
 }
 
-// The height of a shirt changes least when its person turns.
-double PersonTracker::face_px_of_shirt(const Box& shirt, Label person) const {
+// The height of a shirt changes least when its person turns. Where the image's border cuts it, it is at least as high as what is seen of it, and as wide: the
+// larger of both says how near it is.
+double PersonTracker::face_px_of_shirt(const ImageView& image, const Box& shirt, Label person) const {
   const auto size = std::ranges::find(sizes_, person, &Size::person);
   if (size == sizes_.end()) return 0.0;
-  return size->shirt_per_face > 0.0 ? shirt.height / size->shirt_per_face : size->face_px;
+  const auto face_by = [](double side, double per_face) { return per_face > 0.0 ? side / per_face : 0.0; };
+  const double by_height = face_by(shirt.height, size->shirt_height_per_face);
+  const bool is_whole = by_height > 0.0 && !is_cut_in_height(shirt, image);
+  const double face_px = is_whole ? by_height : std::max(by_height, face_by(shirt.width, size->shirt_width_per_face));
+  return face_px > 0.0 ? face_px : size->face_px;
 }
 
 void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) {
-  constexpr double kNew = 0.1;  // share of a new ratio
   if (sighting.source == PersonSource::kFaceColor) {
     sighting.face_px = sighting.box.width;
     return;
   }
-  if (sighting.source == PersonSource::kShirt && shirts_.face_px()) {
-    sighting.face_px = *shirts_.face_px();
-    return;
-  }
   if (sighting.source == PersonSource::kShirt) {
-    sighting.face_px = face_px_of_shirt(sighting.box, *sighting.person);
+    const auto by_place = shirts_.face_px();
+    sighting.face_px = by_place ? *by_place : face_px_of_shirt(input.image, sighting.box, *sighting.person);
     return;
   }
   Size& size = size_of(*sighting.person);
@@ -188,11 +203,9 @@ void PersonTracker::measure(const PersonImage& input, PersonSighting& sighting) 
       sighting.source == PersonSource::kMarker ? input.marker->face.width : sighting.box.width;
   const Box& shirt = shirts_.box();
   const auto& answer = feedback_.members()[kShirt].answer;
-  const bool cut = shirt.y + shirt.height >= input.image.height_px;
-  if (!answer || answer->label != sighting.person || cut) return;
-  const double ratio = shirt.height / sighting.face_px;
-  double& known = size.shirt_per_face;
-  known = known > 0.0 ? (1.0 - kNew) * known + kNew * ratio : ratio;
+  if (!answer || answer->label != sighting.person) return;
+  if (!is_cut_in_height(shirt, input.image)) follow_ratio(size.shirt_height_per_face, shirt.height / size.face_px);
+  if (!is_cut_in_width(shirt, input.image)) follow_ratio(size.shirt_width_per_face, shirt.width / size.face_px);
 }
 
 }  // namespace cgsr::person

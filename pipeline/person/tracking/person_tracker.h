@@ -92,12 +92,13 @@ class PersonTracker {
   struct Size {
     Label person = 0;
     double face_px = 0.0;  // width of the last face that identified the person, or of what would be it by the marker
-    double shirt_per_face = 0.0;  // height of the shirt by the width of the face above it; 0: never seen together
+    // Of the shirt, by the width of the face above it; 0: never seen together and whole.
+    double shirt_height_per_face = 0.0, shirt_width_per_face = 0.0;
   };
   void look_up(const ImageView& image, bool due);
   void locate(const PersonImage& input, Label person, PersonSighting& sighting) const;
   Size& size_of(Label person);
-  [[nodiscard]] double face_px_of_shirt(const Box& shirt, Label person) const;
+  [[nodiscard]] double face_px_of_shirt(const ImageView& image, const Box& shirt, Label person) const;
   void measure(const PersonImage& input, PersonSighting& sighting);
   [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
   void confirm_head(const PersonImage& input, const PersonSighting& sighting);
