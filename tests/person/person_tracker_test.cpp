@@ -82,6 +82,46 @@ TEST(PersonTracker, RelearnsAShirtThatIsNotFoundBelowItsFace) {
   EXPECT_EQ(tracker.update({dim.view()}).person, 1);
 }
 
+// Low in the image the place of the shirt is outside of it, or its upper edge alone is inside.
+TEST(PersonTracker, KeepsTheLightOfAShirtThatIsOutOfViewBelowItsFace) {
+  for (const double top : {200.0, 175.0}) {
+    PersonTracker tracker;
+    learn(tracker, 1, kRed);
+    constexpr double kDimmer = 0.75;  // at once, everywhere
+    const Rgb shirt{kDimmer * kRed.r, kDimmer * kRed.g, kDimmer * kRed.b};
+    const Rgb wall{kDimmer * kWall.r, kDimmer * kWall.g, kDimmer * kWall.b};
+    Picture dim(wall);
+    dim.fill(kShirtBox, shirt);
+    for (int image = 0; image < 10; ++image) tracker.update({standing(kRed).view()});
+    for (int image = 0; image < 10; ++image) tracker.update({dim.view()});
+    ASSERT_EQ(tracker.update({dim.view()}).person, 1);
+    const auto light = tracker.shirts().light_of(1);
+    ASSERT_TRUE(light);
+    ASSERT_LT(light->r, 0.7) << "not as at learning";
+    Picture low(wall);
+    low.fill({140, 235, 40, 5}, shirt);
+    FaceSighting face = face_of(1);
+    face.box.y = top;
+    while (!tracker.face_is_due()) tracker.update({low.view()});
+    tracker.update({low.view(), face});
+    ASSERT_TRUE(tracker.shirts().light_of(1));
+    EXPECT_NEAR(tracker.shirts().light_of(1)->r, light->r, 1e-9) << "a face at " << top;
+    for (int image = 0; image < 6; ++image) tracker.update({dim.view()});
+    EXPECT_EQ(tracker.update({dim.view()}).person, 1) << "a face at " << top;
+  }
+}
+
+// Nor is a shirt learned from the strip of it that is in view.
+TEST(PersonTracker, LearnsNoShirtThatIsOutOfViewBelowItsFace) {
+  PersonTracker tracker;
+  Picture picture;
+  picture.fill({140, 235, 40, 5}, kRed);
+  FaceSighting face = face_of(1);
+  face.box.y = 175.0;
+  for (int image = 0; image < 30; ++image) tracker.update({picture.view(), face});
+  EXPECT_FALSE(tracker.shirts().knows(1));
+}
+
 // 6.4.3: a stranger in the same shirt is noticed by his face, which teaches the shirt nothing.
 TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
   PersonTracker tracker;

@@ -94,6 +94,13 @@ bool lies_under(const Box& shirt, const MarkerSighting& marker) {
   return intersection(shirt, expected).area() >= kMinShare * expected.area();
 }
 
+// Of a face low in the image, or at its side, the shirt is out of view: a few pixels of it teach neither its colours nor the light on it.
+bool is_in_view(const Box& shirt, const ImageView& image) {
+  constexpr double kMinInView = 0.5;  // of its area
+  return intersection(shirt, {0.0, 0.0, double(image.width_px), double(image.height_px)}).area() >=
+         kMinInView * shirt.area();
+}
+
 }  // namespace
 
 ShirtClassifier::ShirtClassifier(ColorLabels& labels, const ShirtParameters& parameters)
@@ -325,6 +332,7 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
 void ShirtClassifier::train(Label label, std::optional<Label> mistaken_for) {
   const auto teacher = teacher_of(last_);
   if (!teacher || teacher->person != label || !colors_.knows(label)) return;
+  if (!is_in_view(teacher->regions.shirt, last_.image)) return;
   const bool in_vain = since_trained_ > 0 && since_trained_ <= parameters_.images_between;
   if (in_vain && !mistaken_for) return;
   learn(last_, *teacher);
@@ -351,7 +359,8 @@ void ShirtClassifier::observe(const PersonImage& input) {
   follow_from(*teacher);
   if (!seen_) return;
   remember_face(*seen_, teacher->face);
-  if (!colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn) learn(input, *teacher);
+  const bool learns = !colors_.knows(*seen_) && seen_images_ >= parameters_.images_to_learn;
+  if (learns && is_in_view(teacher->regions.shirt, input.image)) learn(input, *teacher);
 }
 
 void ShirtClassifier::forget(Label person) {

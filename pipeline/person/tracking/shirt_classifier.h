@@ -68,7 +68,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   bool prepare();
 
   std::optional<Classification> classify(const PersonImage& input) override;
-  /// Relearns the shirt below the face or under the marker of the same input (6.2.4); without either, or for a stranger, nothing is learned.
+  /// Relearns the shirt below the face or under the marker of the same input (6.2.4); without either, for a stranger, or where the image ends above the shirt,
+  /// nothing is learned.
   void train(Label label, std::optional<Label> mistaken_for) override;
   /// What the last classify() found with the colours of the shirt, and not below its person's head, is a negative sample from now on (6.3.1): the head is
   /// seen. Nothing happens where there was no such thing, or where it was done lately.
