@@ -110,6 +110,23 @@ TEST(ShirtPlace, IsNotAScrapElsewhereAsSoonAsTheShirtIsGone) {
   }
 }
 
+// Somebody who was out of sight comes back farther away. That he was nearer before makes no scrap of his shirt where it is covered for a moment.
+TEST(ShirtPlace, IsOfAnotherSizeAfterALoss) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  const Picture near = standing(kRed), empty;
+  tracker.update({near.view()});
+  for (int image = 0; image < 100; ++image) tracker.update({empty.view()});
+  Picture far, beside;
+  far.fill({40, 100, 30, 36}, kRed);
+  beside.fill({200, 100, 30, 36}, kRed);
+  ASSERT_EQ(tracker.update({far.view()}).person, 1);
+  for (int image = 0; image < 5; ++image) EXPECT_EQ(tracker.update({empty.view()}).person, std::nullopt);
+  EXPECT_EQ(tracker.update({beside.view()}).person, 1);
+}
+
 // A jacket of the colour of the road behind it, and a red shirt below it.
 TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
   PersonTrackerParameters parameters;

@@ -283,8 +283,10 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
   return std::nullopt;
 }
 
+// After a loss its person may be nearer or farther away: how large the shirt was says nothing any longer. A light that changes loses it for a few images.
 void ShirtClassifier::found(const PersonImage& input, Label person) {
-  place_ = person == person_ ? settled(place_, box_) : box_;
+  constexpr int kLongLoss = 15;  // images
+  place_ = person == person_ && missed_ < kLongLoss ? settled(place_, box_) : box_;
   person_ = person;
   missed_ = since_trained_ = 0;
   supposed_ = false;
