@@ -294,6 +294,80 @@ TEST(PersonTracker, JudgesTheSizeOfAShirtByTheFaceOfItsOwnPerson) {
   EXPECT_EQ(tracker.update({picture.view()}).person, 1);
 }
 
+/// The shirt alone, once the face that was seen last says nothing any longer. \return whose it is.
+std::optional<Label> turned_away(PersonTracker& tracker, const Picture& picture, std::optional<Label> interest) {
+  for (int image = 0; image < 4; ++image) tracker.update({picture.view(), std::nullopt, interest});
+  return tracker.update({picture.view(), std::nullopt, interest}).person;
+}
+
+// 6.2.2: equal shirts go to the latest person of interest, whoever was learned last.
+TEST(PersonTracker, GivesEqualShirtsToTheLatestPersonOfInterest) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kRed);
+  ASSERT_TRUE(tracker.shirts().knows(2));
+  const Picture red = standing(kRed);
+  EXPECT_EQ(turned_away(tracker, red, 1), 1);
+  EXPECT_EQ(turned_away(tracker, red, std::nullopt), 1) << "still the latest";
+  EXPECT_EQ(turned_away(tracker, red, 2), 2);
+}
+
+TEST(PersonTracker, LeavesThePersonOfInterestTheColoursThatAnotherOneIsLearnedIn) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture red = standing(kRed), blue = standing(kBlue);
+  ASSERT_EQ(turned_away(tracker, red, 1), 1);
+  for (int image = 0; image < 30; ++image) tracker.update({red.view(), face_of(2), 1});
+  ASSERT_TRUE(tracker.shirts().knows(2));
+  EXPECT_EQ(turned_away(tracker, red, 1), 1) << "2 was learned";
+  for (int image = 0; image < 30; ++image) tracker.update({blue.view(), face_of(2), 1});
+  for (int image = 0; image < 30; ++image) tracker.update({red.view(), face_of(2), 1});
+  EXPECT_EQ(turned_away(tracker, red, 1), 1) << "2 was relearned";
+}
+
+// Faces are looked for in every other image: in between his shirt is not taken for that of the person of interest.
+TEST(PersonTracker, WhoIsDressedAsThePersonOfInterestIsNamedByTheFaceThatWasSeenLast) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kRed);
+  const Picture red = standing(kRed);
+  ASSERT_EQ(turned_away(tracker, red, 1), 1);
+  for (int image = 0; image < 20; ++image) {
+    const bool due = tracker.face_is_due();
+    const auto face = due ? std::optional(face_of(2)) : std::nullopt;
+    const auto sighting = tracker.update({red.view(), face, 1});
+    if (image > 1) {
+      EXPECT_EQ(sighting.person, 2) << image;
+    }
+  }
+}
+
+// A map costs millions of instructions: equal shirts do not have one made for every face.
+TEST(ShirtClassifier, RelearnsAShirtThatTwoPeopleWearNowAndThenOnly) {
+  ColorLabels labels(kWidth, kHeight);
+  ShirtClassifier shirts(labels, {});
+  const Picture red = standing(kRed);
+  const auto look = [&](Label face) {
+    const PersonImage image{red.view(), face_of(face), 1};
+    labels.look(image.image);
+    shirts.classify(image);
+    shirts.observe(image);
+  };
+  for (const Label person : {1, 2}) {
+    for (int image = 0; image < 12; ++image) look(person);
+    ASSERT_TRUE(shirts.knows(person));
+  }
+  shirts.prepare();
+  int maps = 0;
+  for (int image = 0; image < 60; ++image) {
+    look(2);
+    shirts.train(2, 1);
+    maps += shirts.prepare() ? 1 : 0;
+  }
+  EXPECT_GE(maps, 3);
+  EXPECT_LE(maps, 6);
+}
+
 // 6.3.1: a shirt as large as the wall is none.
 TEST(PersonTracker, VetoesAShirtOfImplausibleSize) {
   PersonTracker tracker;

@@ -105,7 +105,7 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
   if (!due) now.face.reset();
   now.head = head_of(now);
   const auto settled = feedback_.classify(now);
-  if (due) stranger_.reset();
+  if (due) by_face_.reset();
   shirts_.observe(now);
   if (now.face) face_colors_.observe_face(now, *now.face);
   if (!settled) return {};
@@ -113,10 +113,10 @@ PersonSighting PersonTracker::update(const PersonImage& input, const ImageContex
   sighting.person = settled->label;
   sighting.confidence = settled->confidence;
   locate(input, settled->label, sighting);
-  if (sighting.person == kStranger && sighting.source == PersonSource::kFace) stranger_ = sighting;
-  if (is_of_stranger(sighting)) {
-    sighting.person = kStranger;
-    sighting.confidence = stranger_->confidence;
+  if (sighting.source == PersonSource::kFace) by_face_ = sighting;
+  if (is_below_other_face(sighting)) {
+    sighting.person = by_face_->person;
+    sighting.confidence = by_face_->confidence;
   } else if (sighting.source == PersonSource::kFaceColor) {
     shirts_.learn_negative();
   }
@@ -162,11 +162,11 @@ void PersonTracker::confirm_head(const PersonImage& input, const PersonSighting&
     face_colors_.confirm(*sighting.person, face_above(sighting.box, sighting.face_px));
 }
 
-// Colours where the last face was a stranger's are his until faces are looked for again.
-bool PersonTracker::is_of_stranger(const PersonSighting& sighting) const {
-  if (!stranger_) return false;
-  if (sighting.source == PersonSource::kShirt) return is_above(stranger_->box, sighting.box);
-  return sighting.source == PersonSource::kFaceColor && !intersection(stranger_->box, sighting.box).empty();
+// Colours where the last face was a stranger's, or that of somebody who is dressed alike, are his until faces are looked for again.
+bool PersonTracker::is_below_other_face(const PersonSighting& sighting) const {
+  if (!by_face_ || by_face_->person == sighting.person) return false;
+  if (sighting.source == PersonSource::kShirt) return is_above(by_face_->box, sighting.box);
+  return sighting.source == PersonSource::kFaceColor && !intersection(by_face_->box, sighting.box).empty();
 }
 
 // Of people whose shirts are known, and of whoever was measured last: bounded by the number of shirts.

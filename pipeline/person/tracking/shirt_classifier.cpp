@@ -261,12 +261,22 @@ std::optional<double> ShirtClassifier::face_px() const {
   return face_px_of_trunk(kFactor * followed_.place()->width);
 }
 
+// Equal shirts go to the latest person of interest (6.2.2), also where somebody else's was learned since.
+void ShirtClassifier::prefer(Label person) {
+  if (person == preferred_) return;
+  preferred_ = person;
+  colors_.prefer(person);
+  map_is_due_ = true;
+}
+
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
+  if (input.interest) prefer(*input.interest);
   box_ = elsewhere_ = {};
   is_sized_by_place_ = false;
   if (since_trained_ > 0) ++since_trained_;
   if (since_negative_ > 0) ++since_negative_;
+  if (since_shared_ > 0) ++since_shared_;
   auto person = find(input);
   // In a light that is only supposed something else may have the shirt's colours: it has to be where the shirt was.
   if (supposed_ && person == person_ && overlap(box_, place_) < kSamePlace) person.reset();
@@ -326,6 +336,7 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   background.insert(background.end(), beside.begin(), beside.end());
   const Label person = *teacher.person;
   colors_.learn(person, region_colors(input.image, regions.shirt), background);
+  if (preferred_) colors_.prefer(*preferred_);
   if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);
   supposed_ = false;
   map_is_due_ = true;
@@ -337,6 +348,10 @@ void ShirtClassifier::train(Label label, std::optional<Label> mistaken_for) {
   if (!is_in_view(teacher->regions.shirt, last_.image)) return;
   const bool in_vain = since_trained_ > 0 && since_trained_ <= parameters_.images_between;
   if (in_vain && !mistaken_for) return;
+  // Where both wear the same the shirt is taken for the preferred person's again, however often it is learned.
+  const bool shared = mistaken_for && mistaken_for == preferred_;
+  if (shared && since_shared_ > 0 && since_shared_ <= parameters_.images_between) return;
+  if (shared) since_shared_ = 1;
   learn(last_, *teacher);
   since_trained_ = 1;
   since_negative_ = 0;
@@ -372,6 +387,7 @@ void ShirtClassifier::forget(Label person) {
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
   if (person_ == person) person_.reset();
+  if (preferred_ == person) preferred_.reset();
   if (followed_person_ == person) followed_.end();
 }
 

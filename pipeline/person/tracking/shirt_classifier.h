@@ -52,7 +52,7 @@ struct ShirtParameters {
 };
 
 /// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
-/// interest is in view, that person, however large the others are. Where somebody's head is known, his shirt is below it and nowhere else. It is
+/// interest is in view, that person, however large the others are; colours that several people wear are those of the latest person of interest. Where somebody's head is known, his shirt is below it and nowhere else. It is
 /// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
 /// last face or marker on it is followed at its place too (PartPlace): a blob that is elsewhere, or of another size, is not believed while it is there, and what
 /// it looks like there is added to its colours now and then, a bounded number of samples at a time, without what is more frequent beside it. Just after a loss
@@ -101,6 +101,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   void learn(const PersonImage& input, const Teacher& teacher);
   [[nodiscard]] bool is_plausible(Label person, const Box& shirt, double area_px2) const;
   void remember_face(Label person, const Box& face);
+  void prefer(Label person);
   std::optional<Label> find(const PersonImage& input);
   bool find_below(const PersonHead& head, int image_height_px);
   std::optional<Label> find_at_place(const PersonImage& input, std::optional<Label> by_blob);
@@ -117,8 +118,9 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   PersonColors colors_;
   PartLight light_;
   imaging::LabelTable map_;
-  std::vector<Label> order_;  // the people by their labels in the map; some may be forgotten since
-  bool map_is_due_ = true;    // something was learned since it was made, or the light has changed
+  std::vector<Label> order_;        // the people by their labels in the map; some may be forgotten since
+  std::optional<Label> preferred_;  // the latest person of interest: colours that others have too are his
+  bool map_is_due_ = true;          // something was learned since it was made, or the light has changed
   BlobFinder blobs_;
   PersonImage last_;  // what train() learns from; its pixels are valid until the next classify()
   // Of everybody whose shirt is known, and of whoever was recognised last: the last face, or where it would be by the marker.
@@ -136,6 +138,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   int missed_ = 0;          // images since then; 0: it was found in the last one
   bool supposed_ = false;   // the map is of a light that is only supposed
   int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
+  int since_shared_ = 0;    // images since a shirt was relearned that was taken for the preferred person's; 0: never
   int since_negative_ = 0;  // images since negative samples were learned; 0: never
 };
 
