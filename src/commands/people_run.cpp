@@ -129,22 +129,21 @@ Result<Identity*> person_to_enroll(person::Identities& identities, const PeopleO
   return &identities.people.back();
 }
 
-}  // namespace
-
-Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
-  person::FaceDetectorParameters parameters;
-  parameters.min_face_px = options.min_face_px;
-  return read_face_detector(options.cascade, parameters);
+/// The first view stays, as in a run's gallery (FaceMatchParameters::max_views): the others were chosen by how they differ from it.
+void add_views(std::vector<FaceView>& views, const std::vector<FaceDescriptor>& faces,
+               const std::vector<std::size_t>& chosen, std::size_t max_views) {
+  for (const std::size_t one : chosen) views.push_back(person::view_of(faces[one]));
+  if (views.size() <= max_views) return;
+  const auto too_many = static_cast<std::ptrdiff_t>(views.size() - max_views);
+  views.erase(views.begin() + 1, views.begin() + 1 + too_many);
 }
 
-Result<Enrolled> enroll(const PeopleOptions& options) {
-  auto opened = open_identities(options.identities);
-  if (!opened) return tl::unexpected(opened.error());
-  person::Identities& identities = opened->identities;
+/// Adds the person to those who are known, and writes the file.
+Result<Enrolled> enroll_among(person::Identities& identities, const PeopleOptions& options) {
   const person::FaceGallery others = gallery_of(identities);
   const auto who = person_to_enroll(identities, options);
   if (!who) return tl::unexpected(who.error());
-  Enrolled enrolled{.number = (*who)->number, .note = opened->note};
+  Enrolled enrolled{.number = (*who)->number, .note = {}};
   const auto faces = lone_faces(options, enrolled);
   if (!faces) return tl::unexpected(faces.error());
   const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
@@ -156,11 +155,28 @@ Result<Enrolled> enroll(const PeopleOptions& options) {
                     "looks like that person",
                     options.input, person_name(identities, *other)));
   }
-  auto& views = (*who)->views;
-  for (const std::size_t one : chosen) views.push_back(person::view_of((*faces)[one]));
-  if (views.size() > max_views) views.erase(views.begin(), views.end() - static_cast<std::ptrdiff_t>(max_views));
-  enrolled.views = static_cast<int>(views.size());
+  add_views((*who)->views, *faces, chosen, max_views);
+  enrolled.views = static_cast<int>((*who)->views.size());
   if (auto saved = save_identities(identities, options.identities); !saved) return tl::unexpected(saved.error());
+  return enrolled;
+}
+
+}  // namespace
+
+Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
+  person::FaceDetectorParameters parameters;
+  parameters.min_face_px = options.min_face_px;
+  return read_face_detector(options.cascade, parameters);
+}
+
+Result<Enrolled> enroll(const PeopleOptions& options) {
+  auto opened = open_identities(options.identities);
+  if (!opened) return tl::unexpected(opened.error());
+  auto enrolled = enroll_among(opened->identities, options);
+  if (opened->note.empty()) return enrolled;
+  // The damaged file is under another name by now, whatever else goes wrong.
+  if (!enrolled) return fail(fmt::format("{}; {}", enrolled.error().message, opened->note));
+  enrolled->note = opened->note;
   return enrolled;
 }
 

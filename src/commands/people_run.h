@@ -40,7 +40,8 @@ struct Enrolled {
 };
 
 /// Enrols the person whose face is alone in each image of the input: of those faces, the ones that differ most from each other become views.
-/// Images without a face or with several are left out. Written when all went well.
+/// Images without a face or with several are left out. Of more views than can be kept the oldest go, but never the first. Written when all went well.
+/// \return an error says also where a damaged identities file has been put (open_identities()).
 Result<Enrolled> enroll(const PeopleOptions& options);
 
 /// Takes a person out of the identities file. \return how many of this name there were; an error: none.

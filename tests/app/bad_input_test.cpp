@@ -282,6 +282,21 @@ TEST_F(BadInputFault, PeopleWhoAreNotThere) {
   EXPECT_FALSE(std::filesystem::exists(people));
 }
 
+// Whoever enrols is about to write the file, so a damaged one is put aside first: where it is says the failure that comes after it.
+TEST_F(BadInputFault, ADamagedIdentitiesFileIsNamedWhereTheEnrolmentFails) {
+  const std::string people = scratch_ / "people";
+  write_text(people, "these are no identities\n");
+  const auto failed = run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", images()});
+  expect_refused(failed, "with exactly one face");
+  EXPECT_THAT(failed.errors, HasSubstr("kept as " + people + ".damaged-1"));
+  EXPECT_TRUE(std::filesystem::exists(people + ".damaged-1"));
+  write_text(people, "nor are these\n");
+  const auto unknown =
+      run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--more", "--input", images()});
+  expect_refused(unknown, "there is no 'a'");
+  EXPECT_THAT(unknown.errors, HasSubstr("kept as " + people + ".damaged-2"));
+}
+
 TEST_F(BadInputFault, OutputsThatWouldReplaceAFileOfAnotherKind) {
   const auto folder = images();
   write_text(scratch_ / "notes.txt", "not ours\n");

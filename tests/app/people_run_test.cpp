@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "src/input/identities_file.h"
 #include "tests/app/program.h"
 #include "tests/support/scratch_cache.h"
 #include "tools/lab/csv_row.h"
@@ -134,6 +135,26 @@ TEST_F(RunWithPeople, EnrollsTwoWhoLookAlikeAndRefusesTheSameFaceUnderAnotherNam
       {"people", "enroll", "--identities", identities(), "--name", "Twin", "--input", scratch_ / "again", "--alike"});
   EXPECT_EQ(twin.exit_code, 0) << twin.errors;
   EXPECT_THAT(twin.output, HasSubstr("is number 3"));
+}
+
+// Views beyond the number that is kept take the place of older ones, not of the first.
+TEST_F(RunWithPeople, KeepsTheFirstViewOfWhomMoreViewsAreAddedTo) {
+  enroll(0, kName);
+  const auto before = load_identities(identities());
+  ASSERT_TRUE(before) << before.error().message;
+  for (int round = 0; round < 2; ++round) {
+    const auto more = run_cgsr({"people", "enroll", "--identities", identities(), "--name", kName, "--more", "--input",
+                                scratch_ / "portraits0"});
+    ASSERT_EQ(more.exit_code, 0) << more.errors;
+  }
+  const auto after = load_identities(identities());
+  ASSERT_TRUE(after) << after.error().message;
+  const auto& first = before->people.at(0).views;
+  const auto& views = after->people.at(0).views;
+  ASSERT_EQ(first.size(), 4U);
+  ASSERT_EQ(views.size(), 6U) << "as many as are kept";
+  EXPECT_EQ(views.front(), first.front());
+  EXPECT_EQ(views.back(), first.back());
 }
 
 // Two who are known stand side by side and look at the robot, which stands as well: whoever was identified first stays the person of interest (6.2.2), and
