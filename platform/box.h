@@ -26,4 +26,10 @@ inline Box intersection(const Box& a, const Box& b) {
   return {left, top, std::max(0.0, right - left), std::max(0.0, bottom - top)};
 }
 
+/// \return what both boxes cover, as a share of what either covers, 0..1; 0 when they do not meet or cover nothing.
+inline double intersection_over_union(const Box& a, const Box& b) {
+  const double both = intersection(a, b).area();
+  return both > 0.0 ? both / (a.area() + b.area() - both) : 0.0;
+}
+
 }  // namespace cgsr

@@ -88,7 +88,7 @@ std::optional<Box> truth_box(const std::vector<double>& numbers) {
 ImageScore score_image(const Box& truth, const std::optional<Box>& found) {
   if (!found || found->empty()) return {};
   const double shared = intersection(truth, *found).area();
-  const double iou = shared / (truth.area() + found->area() - shared);
+  const double iou = intersection_over_union(truth, *found);
   return {shared / found->area(), shared / truth.area(), iou, iou > 0.5, true};
 }
 

@@ -8,14 +8,6 @@ namespace {
 constexpr double kRolls_mps = 0.05;
 constexpr double kRightOverlap = 0.4;
 
-double intersection_over_union(const Box& a, const Box& b) {
-  const double width = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x);
-  const double height = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
-  if (width <= 0.0 || height <= 0.0) return 0.0;
-  const double common = width * height;
-  return common / (a.width * a.height + b.width * b.height - common);
-}
-
 void keep_smallest(std::optional<double>& smallest, double value) {
   smallest = std::min(smallest.value_or(value), value);
 }

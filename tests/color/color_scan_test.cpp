@@ -58,11 +58,6 @@ ColorLikelihood learned() {
   return colors;
 }
 
-double overlap(const Box& a, const Box& b) {
-  const double common = intersection(a, b).area();
-  return common / (a.area() + b.area() - common);
-}
-
 TEST(ColorScan, NamesTheObjectsPlaceFirst) {
   const Box there{200, 100, 40, 60};
   Painted image;
@@ -71,7 +66,7 @@ TEST(ColorScan, NamesTheObjectsPlaceFirst) {
   ColorScan scan;
   const auto places = scan.places(image.pyramid(), learned(), {1.0, 1.0, 1.0}, {0, 0, 40, 60});
   ASSERT_FALSE(places.empty());
-  EXPECT_GT(overlap(places.front(), there), 0.6);
+  EXPECT_GT(intersection_over_union(places.front(), there), 0.6);
 }
 
 TEST(ColorScan, NamesNothingWhereNothingStandsOut) {
@@ -98,7 +93,7 @@ TEST(ColorScan, LooksUnderThePresentLight) {
   ColorScan scan;
   const auto places = scan.places(image.pyramid(), learned(), light, {0, 0, 40, 60});
   ASSERT_FALSE(places.empty());
-  EXPECT_GT(overlap(places.front(), there), 0.6);
+  EXPECT_GT(intersection_over_union(places.front(), there), 0.6);
 }
 
 TEST(ColorScan, KnowsItNearerAndFartherToo) {
@@ -109,7 +104,7 @@ TEST(ColorScan, KnowsItNearerAndFartherToo) {
     ColorScan scan;
     const auto places = scan.places(image.pyramid(), learned(), {1.0, 1.0, 1.0}, {0, 0, 40, 60});
     ASSERT_FALSE(places.empty());
-    EXPECT_GT(overlap(places.front(), there), 0.6) << scale;
+    EXPECT_GT(intersection_over_union(places.front(), there), 0.6) << scale;
   }
 }
 
@@ -122,7 +117,7 @@ TEST(ColorScan, NamesDifferentPlacesOnly) {
   ASSERT_GE(places.size(), there.size());
   for (const Box& box : there) {
     EXPECT_TRUE(std::any_of(places.begin(), places.begin() + 3, [&](const Box& place) {
-      return overlap(place, box) > 0.5;
+      return intersection_over_union(place, box) > 0.5;
     })) << box.x;
   }
 }

@@ -29,11 +29,6 @@ test::Painting with_ball(const Circle& circle, double factor) {
   return painting;
 }
 
-double overlap(const Box& a, const Box& b) {
-  const double shared = intersection(a, b).area();
-  return shared / (a.area() + b.area() - shared);
-}
-
 class Bench {
  public:
   explicit Bench(const IntegratedParameters& parameters = {}) : tracker_(tracker(parameters)) {}
@@ -54,7 +49,7 @@ TEST(IntegratedTracker, FindsTheBallInTheLight) {
     const auto seen = bench.look(with_ball(kInLight, 1.0), with_mask ? mask.view() : ShadeMaskView{});
     ASSERT_TRUE(seen.found) << with_mask;
     EXPECT_EQ(seen.mask_used, with_mask);
-    EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
+    EXPECT_GT(intersection_over_union(seen.box, test::around(kInLight)), 0.85);
     EXPECT_FALSE(seen.dark);
     EXPECT_TRUE(seen.exact);
     EXPECT_GT(seen.light.r, 0.55);
@@ -66,7 +61,7 @@ TEST(IntegratedTracker, FindsTheBallInShadeInsideTheMask) {
   Bench bench;
   const auto seen = bench.look(with_ball(kInShade, kShade), mask.view());
   ASSERT_TRUE(seen.found);
-  EXPECT_GT(overlap(seen.box, test::around(kInShade)), 0.85);
+  EXPECT_GT(intersection_over_union(seen.box, test::around(kInShade)), 0.85);
   EXPECT_TRUE(seen.dark);
   EXPECT_GT(seen.shade_share, 0.99);
   EXPECT_LT(seen.light.r, 0.56);
@@ -237,7 +232,7 @@ TEST(IntegratedTracker, FollowsTheBallIntoTheShade) {
     }
     const auto seen = bench.look(painting, mask.view());
     ASSERT_TRUE(seen.found) << i;
-    EXPECT_GT(overlap(seen.box, test::around(circle)), 0.75) << i;
+    EXPECT_GT(intersection_over_union(seen.box, test::around(circle)), 0.75) << i;
   }
 }
 
@@ -260,7 +255,7 @@ TEST(IntegratedTracker, AJumpIsFollowedAtOnce) {
     const auto seen = bench.look(with_ball(circle, 0.9), mask.view());
     if (!seen.found) continue;
     ++found;
-    EXPECT_GT(overlap(seen.box, test::around(circle)), 0.75) << i;
+    EXPECT_GT(intersection_over_union(seen.box, test::around(circle)), 0.75) << i;
   }
   EXPECT_GE(found, 10);
 }
@@ -332,7 +327,7 @@ TEST(IntegratedTracker, WithFewUnitsAnImageItFindsABallThatMoves) {
       continue;
     }
     if (first < 0) first = i;
-    EXPECT_GT(overlap(seen.box, test::around(moved)), 0.75) << i;
+    EXPECT_GT(intersection_over_union(seen.box, test::around(moved)), 0.75) << i;
   }
   EXPECT_GT(first, 0) << "this test could not fail";
   EXPECT_LT(first, 12);
@@ -377,7 +372,7 @@ TEST(IntegratedTracker, ABrightBallOnAFloorOfItsDarkColoursDoesNotRunIntoIt) {
     test::paint_ball(painting, moved, 0.8);
     const auto seen = bench.look(painting, {});
     ASSERT_TRUE(seen.found) << i;
-    EXPECT_GT(overlap(seen.box, test::around(moved)), 0.85) << i;
+    EXPECT_GT(intersection_over_union(seen.box, test::around(moved)), 0.85) << i;
   }
 }
 
@@ -398,7 +393,7 @@ TEST(IntegratedTracker, OfTwoBallsTheOneMoreAlikeIsFollowedInTheEnd) {
   BallSighting seen;
   for (int i = 0; i < 12; ++i) seen = look(true);
   ASSERT_TRUE(seen.found);
-  EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
+  EXPECT_GT(intersection_over_union(seen.box, test::around(kInLight)), 0.85);
 }
 
 // Something large of the ball's colours has many windows that are like it.
@@ -412,7 +407,7 @@ TEST(IntegratedTracker, ALargeSurfaceOfItsColoursDoesNotUseUpTheLooks) {
   }
   const auto seen = bench.look(painting, mask.view());
   ASSERT_TRUE(seen.found);
-  EXPECT_GT(overlap(seen.box, test::around(kInLight)), 0.85);
+  EXPECT_GT(intersection_over_union(seen.box, test::around(kInLight)), 0.85);
 }
 
 TEST(IntegratedTrackerFault, ImagesThatCannotBeSearchedGiveNothing) {

@@ -22,11 +22,6 @@ constexpr Light kLearnedLight{0.8, 0.8, 0.8};
 constexpr Box kFirst{130, 90, 40, 52};
 constexpr int kStrongBlur_px = 45;
 
-double overlap(const Box& a, const Box& b) {
-  const double shared = intersection(a, b).area();
-  return shared / (a.area() + b.area() - shared);
-}
-
 Box moved(double x, double y, double factor = 1.0) {
   return {x, y, kFirst.width * factor, kFirst.height * factor};
 }
@@ -130,7 +125,7 @@ TEST(TrackerProperty, FindsTheObjectWhereverItIsAtFirstSight) {
     const Box place = moved(5.0 + random() % 270, 5.0 + random() % 180);
     const auto found = bench.see(place);
     ASSERT_TRUE(found.found) << place.x << ',' << place.y;
-    EXPECT_GT(overlap(found.box, place), 0.7) << place.x << ',' << place.y;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.7) << place.x << ',' << place.y;
     EXPECT_LT(found.divergence, 0.3);
   }
 }
@@ -141,7 +136,7 @@ TEST(Tracker, FollowsTheObjectAcrossTheImage) {
     const Box place = moved(20 + 6 * i, 90 + 40 * std::sin(0.2 * i));
     const auto found = bench.see(place);
     ASSERT_TRUE(found.found) << i;
-    EXPECT_GT(overlap(found.box, place), 0.7) << i;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.7) << i;
   }
 }
 
@@ -152,7 +147,7 @@ TEST(Tracker, StartsWhereItIsToldTheObjectIs) {
   bench.tracker().place(image, bench.reduce(image), kFirst);
   const auto found = bench.see(moved(kFirst.x + 5, kFirst.y - 3));
   ASSERT_TRUE(found.found);
-  EXPECT_GT(overlap(found.box, moved(kFirst.x + 5, kFirst.y - 3)), 0.8);
+  EXPECT_GT(intersection_over_union(found.box, moved(kFirst.x + 5, kFirst.y - 3)), 0.8);
 }
 
 // Scenes that have nothing to do with one another: a film's cut, or a robot that turned fast. What was is no cage.
@@ -162,7 +157,7 @@ TEST(Tracker, FollowsAJumpToTheOtherEndOfTheImageAtOnce) {
     const Box place = i % 3 == 2 ? moved(250, 150) : i % 3 == 1 ? moved(20, 20) : moved(140, 95);
     const auto found = bench.see(place);
     ASSERT_TRUE(found.found) << i;
-    EXPECT_GT(overlap(found.box, place), 0.6) << i;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << i;
   }
 }
 
@@ -174,7 +169,7 @@ TEST(Tracker, SomethingElseInItsPlaceIsNotTheObject) {
   EXPECT_FALSE(found.found);
   for (int i = 0; i < 3; ++i) found = bench.see(moved(40, 30));
   ASSERT_TRUE(found.found) << "and what it saw instead was not learned";
-  EXPECT_GT(overlap(found.box, moved(40, 30)), 0.5);
+  EXPECT_GT(intersection_over_union(found.box, moved(40, 30)), 0.5);
 }
 
 TEST(Tracker, SomethingElseIsNotTakenForItAtFirstSight) {
@@ -192,7 +187,7 @@ TEST(Tracker, RecognisesABlurredObjectElsewhere) {
   for (int i = 0; i < 4; ++i) {
     const Box place = moved(220 + 8 * i, 60);
     const auto found = bench.look(blurred(room(&place), 5));
-    if (found.found && overlap(found.box, place) > 0.5) ++found_images;
+    if (found.found && intersection_over_union(found.box, place) > 0.5) ++found_images;
   }
   EXPECT_GE(found_images, 3);
 }
@@ -213,7 +208,7 @@ TEST(Tracker, FollowsWhatMayBeTheLostObjectWithoutReportingIt) {
   TrackedObject found;
   for (int i = 0; i < 4; ++i) found = bench.look_nearby(room(&place));
   ASSERT_TRUE(found.found);
-  EXPECT_GT(overlap(found.box, place), 0.6);
+  EXPECT_GT(intersection_over_union(found.box, place), 0.6);
 }
 
 TEST(Tracker, LooksAroundThePlaceWhereItWasLost) {
@@ -225,7 +220,7 @@ TEST(Tracker, LooksAroundThePlaceWhereItWasLost) {
     TrackedObject found;
     for (int i = 0; i < 7 && !found.found; ++i) found = bench.look_nearby(room(&place));
     ASSERT_TRUE(found.found) << place.x;
-    EXPECT_GT(overlap(found.box, place), 0.6) << place.x;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << place.x;
   }
 }
 
@@ -238,7 +233,7 @@ TEST(Tracker, LooksWhereItsColorsStandOut) {
   TrackedObject found;
   for (int i = 0; i < 4 && !found.found; ++i) found = bench.look_nearby(room(&place));
   ASSERT_TRUE(found.found);
-  EXPECT_GT(overlap(found.box, place), 0.6);
+  EXPECT_GT(intersection_over_union(found.box, place), 0.6);
 }
 
 // With work for one place in each image all 25 around have their turn, on either side: every second image is theirs.
@@ -254,7 +249,7 @@ TEST(Tracker, LooksAtEveryPlaceAroundWithLittleWork) {
       found = bench.look_nearby(room(&place), budget);
     }
     ASSERT_TRUE(found.found) << place.x << ',' << place.y;
-    EXPECT_GT(overlap(found.box, place), 0.5) << place.x << ',' << place.y;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.5) << place.x << ',' << place.y;
   }
 }
 
@@ -268,7 +263,7 @@ TEST(TrackerProperty, FindsItAgainInAnotherSize) {
     TrackedObject found;
     for (int i = 0; i < 6; ++i) found = bench.see(place);
     ASSERT_TRUE(found.found) << factor;
-    EXPECT_GT(overlap(found.box, place), 0.6) << factor;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << factor;
   }
 }
 
@@ -290,7 +285,7 @@ TEST(TrackerProperty, FindsItAgainAnywhereAfterALoss) {
     TrackedObject found;
     for (int i = 0; i < 3; ++i) found = bench.see(place);
     ASSERT_TRUE(found.found) << loss << ": " << place.x << ',' << place.y;
-    EXPECT_GT(overlap(found.box, place), 0.6) << loss << ": " << place.x << ',' << place.y;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << loss << ": " << place.x << ',' << place.y;
   }
 }
 
@@ -303,7 +298,7 @@ TEST(TrackerProperty, FindsItUnderEveryLightOfTheGridAndNamesTheLight) {
     const auto found = bench.see(place, light);
     const auto words = testing::PrintToString(std::array{light.r, light.g, light.b});
     ASSERT_TRUE(found.found) << words;
-    EXPECT_GT(overlap(found.box, place), 0.6) << words;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << words;
     EXPECT_NEAR(found.exact_light.r / light.r, 1.0, 0.06) << words;
     EXPECT_NEAR(found.exact_light.g / light.g, 1.0, 0.06) << words;
     EXPECT_NEAR(found.exact_light.b / light.b, 1.0, 0.06) << words;
@@ -329,7 +324,7 @@ TEST(Tracker, KeepsItsBoxWhenTheLightIsSwitched) {
     const Box place = moved(60 + 3 * i, 80);
     const auto found = bench.see(place, light);
     ASSERT_TRUE(found.found) << i;
-    EXPECT_GT(overlap(found.box, place), 0.6) << i;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << i;
   }
 }
 
@@ -341,7 +336,7 @@ TEST(TrackerProperty, KeepsItsBoxWhileTheObjectGrowsOrShrinks) {
       const Box place = moved(150 - 0.5 * kFirst.width * factor, 110 - 0.5 * kFirst.height * factor, factor);
       const auto found = bench.see(place);
       ASSERT_TRUE(found.found) << i;
-      EXPECT_GT(overlap(found.box, place), 0.7) << i << " to " << end;
+      EXPECT_GT(intersection_over_union(found.box, place), 0.7) << i << " to " << end;
     }
   }
 }
@@ -412,7 +407,7 @@ TEST(TrackerFault, WithoutABudgetItStillFollowsWhatItSaw) {
     const ImageView image = painting.photograph(1.0, 9);
     const auto found = bench.look(image, none);
     ASSERT_TRUE(found.found) << i;
-    EXPECT_GT(overlap(found.box, place), 0.6) << i;
+    EXPECT_GT(intersection_over_union(found.box, place), 0.6) << i;
   }
 }
 

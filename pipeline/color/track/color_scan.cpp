@@ -15,11 +15,6 @@ constexpr double kMaxOverlap = 0.3;  // of two places, as intersection over unio
 constexpr int kBlock = 4 * kStride;  // samples: of the windows that begin in one block the best one counts
 constexpr std::size_t kMaxBlocks = kMaxSamples / kBlock;
 
-double overlap(const Box& a, const Box& b) {
-  const double common = intersection(a, b).area();
-  return common / (a.area() + b.area() - common);
-}
-
 }  // namespace
 
 ColorScan::ColorScan()
@@ -46,7 +41,8 @@ std::span<const Box> ColorScan::places(const imaging::Pyramid& image, const Colo
     if (best.separation < kMinSeparation) break;
     const Box place = best.box;
     places_[count++] = place;
-    std::erase_if(windows_, [&](const Window& other) { return overlap(place, other.box) > kMaxOverlap; });
+    std::erase_if(windows_,
+                  [&](const Window& other) { return intersection_over_union(place, other.box) > kMaxOverlap; });
   }
   return {places_.data(), count};
 }

@@ -13,14 +13,8 @@ namespace cgsr::person {
 namespace {
 
 constexpr int kFactor = ColorLabels::kFactor;
-constexpr double kSamePlace = 0.4;  // overlap by the union
+constexpr double kSamePlace = 0.4;  // intersection over union
 constexpr double kSameSize = 0.6;   // the same, where a blob is the trunk and little else
-
-double overlap(const Box& a, const Box& b) {
-  const double both = intersection(a, b).area();
-  const double either = a.area() + b.area() - both;
-  return either > 0.0 ? both / either : 0.0;
-}
 
 Box in_camera(const Blob& blob, int left = 0, int top = 0) {
   return {(blob.box.x + left) * kFactor, (blob.box.y + top) * kFactor, blob.box.width * kFactor,
@@ -217,9 +211,9 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
   const Box trunk{place->x * kFactor, place->y * kFactor, place->width * kFactor, place->height * kFactor};
   if (!is_plausible(*followed_person_, trunk, trunk.area())) return by_blob;
   const bool supposed = supposed_ && followed_person_ == person_;
-  if (supposed && overlap(trunk, place_) < kSamePlace) return by_blob;
+  if (supposed && intersection_over_union(trunk, place_) < kSamePlace) return by_blob;
   if (!supposed) learn_at_place(input, trunk);
-  if (by_blob == followed_person_ && overlap(box_, trunk) >= kSameSize) return by_blob;
+  if (by_blob == followed_person_ && intersection_over_union(box_, trunk) >= kSameSize) return by_blob;
   box_ = trunk;
   is_sized_by_place_ = true;
   return followed_person_;
@@ -279,7 +273,7 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
   if (since_shared_ > 0) ++since_shared_;
   auto person = find(input);
   // In a light that is only supposed something else may have the shirt's colours: it has to be where the shirt was.
-  if (supposed_ && person == person_ && overlap(box_, place_) < kSamePlace) person.reset();
+  if (supposed_ && person == person_ && intersection_over_union(box_, place_) < kSamePlace) person.reset();
   if (person && is_scrap_elsewhere(input, *person)) person.reset();
   const auto& marker = input.marker;
   if (person && marker && marker->person == person && is_facing(*marker) && !lies_under(box_, *marker)) person.reset();
