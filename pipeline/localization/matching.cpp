@@ -13,10 +13,15 @@ constexpr std::size_t kCandidatesEach = 6;  // per expected edge, on average
 constexpr float kRivalOverlap = 0.3F;       // of a match, along which a rival lies
 constexpr float kLeastRival_px = 0.4F;      // nearer it is the same line
 
-// How far off the expected edge a matched line lies: positive along the expected edge's own normal.
+// From the perceived line to the expected edge, positive along the line's normal.
+float from_line(const Match& match) {
+  return 0.5F * (match.d1_px + match.d2_px);
+}
+
+// The same, positive along the expected edge's own normal.
 float line_of(const Match& match, std::span<const ProjectedPiece> expected, const SegmentTable& perceived) {
   const bool along = expected[match.projected].direction.dot(perceived.edges()[match.perceived].direction) > 0.0F;
-  return (along ? 0.5F : -0.5F) * (match.d1_px + match.d2_px);
+  return along ? from_line(match) : -from_line(match);
 }
 
 }  // namespace
@@ -126,7 +131,7 @@ void Matcher::find_candidates(std::uint32_t index, const ProjectedPiece& piece, 
   }
 }
 
-void Matcher::note_rival(const Match& left_out, float line_px, std::span<const ProjectedPiece> expected,
+void Matcher::note_rival(const Match& left_out, std::span<const ProjectedPiece> expected,
                          const SegmentTable& perceived) {
   for (Match& match : matches_) {
     const bool one_expected = match.projected == left_out.projected;
@@ -136,8 +141,10 @@ void Matcher::note_rival(const Match& left_out, float line_px, std::span<const P
                              : std::min(match.to_on_perceived_px, left_out.to_on_perceived_px) -
                                    std::max(match.from_on_perceived_px, left_out.from_on_perceived_px);
     if (common < kRivalOverlap * match.overlap_px()) continue;
-    const float gap = std::abs(line_px - line_of(match, expected, perceived));
-    if (gap > kLeastRival_px) match.rival_px = std::min(match.rival_px, gap);
+    // Each along the normal of the edge that the two pairs share.
+    const float gap = one_expected ? line_of(left_out, expected, perceived) - line_of(match, expected, perceived)
+                                   : from_line(left_out) - from_line(match);
+    if (std::abs(gap) > kLeastRival_px) match.rival_px = std::min(match.rival_px, std::abs(gap));
   }
 }
 
@@ -171,7 +178,7 @@ std::span<const Match> Matcher::match(std::span<const ProjectedPiece> expected, 
     if ((mine.count > 0 && std::abs(line - line_of_expected_[match.projected]) > kSameLine_px) ||
         taken_of(mine, match.from_px, match.to_px) > kMostTaken * overlap ||
         taken_of(its, match.from_on_perceived_px, match.to_on_perceived_px) > kMostTaken * overlap) {
-      note_rival(match, line, expected, perceived);
+      note_rival(match, expected, perceived);
       continue;
     }
     if (mine.count == 0) line_of_expected_[match.projected] = line;

@@ -62,8 +62,7 @@ class Matcher {
     std::uint32_t count = 0;
   };
   /// A pair that was left out because a more confident one holds its edges says that this one may be the wrong one of two.
-  void note_rival(const Match& left_out, float line_px, std::span<const ProjectedPiece> expected,
-                  const SegmentTable& perceived);
+  void note_rival(const Match& left_out, std::span<const ProjectedPiece> expected, const SegmentTable& perceived);
   static float taken_of(const Taken& taken, float from, float to);
   static void take(Taken& taken, float from, float to);
 

@@ -86,6 +86,23 @@ TEST_F(Matching, RemembersTheLineThatItCouldHaveBeenInstead) {
   EXPECT_EQ(broken[0].rival_px, Match::kNoRival) << "two pieces of one line are no rivals";
 }
 
+// The two borders of a gap run either way round in a map, and the perceived edge may lie between them.
+TEST_F(Matching, ARivalIsAsFarOffWhicheverWayTheEdgesRun) {
+  const std::vector<ProjectedPiece> upper{expected(100, 100, 200, 100), expected(200, 100, 100, 100)};
+  const std::vector<ProjectedPiece> lower{expected(100, 103, 200, 103), expected(200, 103, 100, 103)};
+  const std::vector<PerceivedEdge> between{perceived(110, 101, 190, 101), perceived(190, 101, 110, 101)};
+  for (const ProjectedPiece& first : upper) {
+    for (const ProjectedPiece& second : lower) {
+      for (const PerceivedEdge& edge : between) {
+        const auto found = match({first, second}, {edge});
+        ASSERT_EQ(found.size(), 1U);
+        EXPECT_EQ(found[0].projected, 0U);
+        EXPECT_NEAR(found[0].rival_px, 3.0F, 0.01F);
+      }
+    }
+  }
+}
+
 TEST_F(Matching, ThatIsTooFarTooOblicOrBesideIsNone) {
   EXPECT_EQ(match({expected(100, 100, 200, 100)}, {perceived(100, 130, 200, 130)}).size(), 0U) << "distance";
   EXPECT_EQ(match({expected(100, 100, 200, 100)}, {perceived(100, 90, 200, 120)}).size(), 0U) << "angle";
