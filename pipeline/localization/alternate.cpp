@@ -21,8 +21,6 @@ constexpr double kUnseenDepth_m = 3.0;
 constexpr double kLeastDepth_m = 0.1;
 constexpr double kLeastNoise = 0.3;  // of the stated noise
 
-// A model is measured as well as it is small.
-constexpr double kMapSigmaOfSize = 0.001;
 // Where edges meet, their slopes mix: a perceived one stops this far from its corner, give or take. Farther off it was broken, or another
 // one goes on where it ends.
 constexpr float kShortOfCorner_px = 1.5F;
@@ -60,7 +58,6 @@ Alternation::Alternation(const world::Map& map, const LocalizerParameters& param
   visible_.reserve(static_cast<std::size_t>(parameters.max_pieces));
   lines_.reserve(static_cast<std::size_t>(parameters.max_pieces) * 4);
   for (const Eigen::Vector3f& vertex : map.vertices) bounds_.extend(vertex.cast<double>());
-  map_sigma_m_ = std::min(parameters.map_sigma_m, kMapSigmaOfSize * bounds_.diagonal().norm());
   // A low field is stood on, not in.
   const Eigen::Vector3d margin = Eigen::Vector3d::Constant(kCloseBy * bounds_.diagonal().norm());
   bounds_.min() -= margin;
@@ -144,7 +141,7 @@ void Alternation::gather(std::span<const Match> matches, const SegmentTable& per
                     static_cast<double>(std::clamp(match.overlap_px() / kWholeOverlap_px, kLeastShare, 1.0F));
       // The map's error is the same for each image and another for each thing in it: from near, it is what is seen.
       const double depth_m = std::max(kLeastDepth_m, 0.5 * static_cast<double>(piece.depth0_m + piece.depth1_m));
-      const double map_px = camera_.fx_px * map_sigma_m_ / depth_m;
+      const double map_px = camera_.fx_px * parameters_.map_sigma_m / depth_m;
       // Of two lines that lie close beside each other the match may have taken the wrong one.
       const double rival_px =
           match.rival_px < Match::kNoRival ? parameters_.rival_share * static_cast<double>(match.rival_px) : 0.0;

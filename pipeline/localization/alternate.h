@@ -114,7 +114,6 @@ class Alternation {
 
   LocalizerParameters parameters_;
   Eigen::AlignedBox3d bounds_;  ///< of the map and what is close by.
-  double map_sigma_m_ = 0.0;
   render::Expectation* expectation_;
   geometry::Camera camera_;
   ExpectedView view_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include "pipeline/localization/alternate.h"
 #include "pipeline/localization/alternative_hypothesis.h"
@@ -29,6 +30,9 @@ constexpr double kLeastPiece_px = 5.0;
 // Near ones that hide what is behind them: a budget of about 4 million instructions where a map fills the view with things.
 constexpr int kMostSurfaces = 1000;
 
+// A model is measured as well as it is small.
+constexpr double kMapSigmaOfSize = 0.001;
+
 std::unique_ptr<render::Expectation> usual(const world::Map& map, const LocalizerParameters& parameters) {
   if (parameters.method == Method::kStronger) return std::make_unique<EveryEdge>(map);
   render::RasterParameters raster;
@@ -38,8 +42,15 @@ std::unique_ptr<render::Expectation> usual(const world::Map& map, const Localize
   return std::make_unique<render::DepthRaster>(map, raster);
 }
 
+double size_m(const world::Map& map) {
+  Eigen::AlignedBox3f bounds;
+  for (const Eigen::Vector3f& vertex : map.vertices) bounds.extend(vertex);
+  return bounds.isEmpty() ? 0.0 : static_cast<double>(bounds.diagonal().norm());
+}
+
 // Stronger's method works with all that it projects.
 LocalizerParameters fitted(LocalizerParameters parameters, const world::Map& map) {
+  parameters.map_sigma_m = std::min(parameters.map_sigma_m, kMapSigmaOfSize * size_m(map));
   if (parameters.method == Method::kStronger)
     parameters.max_pieces = std::max(parameters.max_pieces, static_cast<int>(map.edges.size()));
   if (parameters.method != Method::kGlCorrect) {

@@ -223,8 +223,10 @@ struct LocalizerParameters {
     visit.number("rival_share", self.rival_share, {0.0, 10.0}, "",
                  "The standard deviation of a match that may be the wrong one of two parallel lines, as a share of the "
                  "distance between them.");
-    visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
-                 "The standard deviation of positions in the map, for every match and for every pose.");
+    visit.number(
+        "map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
+        "The standard deviation of positions in the map, for every match and for every pose; of a small map at most "
+        "a thousandth of its diagonal.");
     visit.number("max_match_angle_deg", self.max_match_angle_deg, {1.0, 45.0}, "deg",
                  "The largest angle between an expected and a perceived edge that match.");
     visit.number("max_match_radius_px", self.max_match_radius_px, {2.0, 200.0}, "px",

@@ -92,6 +92,19 @@ world::Map wall_of_strips() {
   return b.map;
 }
 
+// Matches and stated errors alike: a model a hundredth of a room's size is not half a centimetre off.
+TEST(Localizer, StatesASmallModelsErrorByItsSize) {
+  MapBuilder model;
+  model.rectangle({0, 0, 0}, {0.06F, 0, 0}, {0, 0.08F, 0}, model.grey(0.8F));
+  const world::Map room = small_room();
+  const auto stated_m = [](const world::Map& map) {
+    const Localizer localizer(map, room_camera(), {});
+    return std::sqrt(localizer.in_world(geometry::Matrix6d::Zero())(0, 0));
+  };
+  EXPECT_NEAR(stated_m(model.map), 0.001 * 0.1, 1e-9);
+  EXPECT_DOUBLE_EQ(stated_m(room), LocalizerParameters{}.map_sigma_m);
+}
+
 // The distances of level lines say nothing of a step to the side; where they end does.
 TEST(Localizer, CornersHoldThePoseAlongParallelEdges) {
   const world::Map map = wall_of_strips();
