@@ -251,6 +251,22 @@ std::span<const LineDistance> Alternation::distances_from(const geometry::Pose& 
   return lines_;
 }
 
+void Alternation::take_measured_noise(const geometry::Pose& start, const Belief& belief, const SolverOptions& solver,
+                                      Solution& solution) {
+  const double noise = std::clamp(solution.rms_px / parameters_.system_sigma_px, kLeastNoise, 1.0);
+  const auto scale = [this](double factor) {
+    for (LineDistance& line : lines_) {
+      if (!line.end) line.sigma_px *= factor;
+    }
+  };
+  scale(noise);
+  const Solution measured = solve(lines_, start, belief.prior, belief.information, camera_, solver);
+  scale(1.0 / noise);
+  if (!measured.solved) return;
+  solution.X_WC = measured.X_WC;
+  solution.cost = cost_of(lines_, solution.X_WC, belief.prior, belief.information, camera_, solver.robust).sum;
+}
+
 Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, const SegmentTable& perceived,
                              const AlternateOptions& options, WorkBudget& budget) {
   Estimate estimate;
@@ -279,14 +295,7 @@ Estimate Alternation::refine(const geometry::Pose& start, const Belief& belief, 
     const auto matches = matcher_.match(view_.projected(), perceived, rules);
     gather(matches, perceived);
     Solution solution = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
-    if (options.measured_noise && solution.solved) {
-      const double noise = std::clamp(solution.rms_px / parameters_.system_sigma_px, kLeastNoise, 1.0);
-      for (LineDistance& line : lines_) {
-        if (!line.end) line.sigma_px *= noise;
-      }
-      const Solution measured = solve(lines_, X_WC, belief.prior, belief.information, camera_, solver);
-      if (measured.solved) solution.X_WC = measured.X_WC;
-    }
+    if (options.measured_noise && solution.solved) take_measured_noise(X_WC, belief, solver, solution);
     ++estimate.rounds;
     ++rounds_;
     estimate.expected = static_cast<int>(view_.projected().size());

@@ -104,6 +104,9 @@ class Alternation {
   [[nodiscard]] MatchingRules rules_within(float radius_px) const;
   void gather(std::span<const Match> matches, const SegmentTable& perceived);
   void gather_ends(const ProjectedPiece& piece, const PerceivedEdge& edge, LineDistance end);
+  /// Moves a solution to where the noise that its matches show has it; its cost there is that with the stated noise.
+  void take_measured_noise(const geometry::Pose& start, const Belief& belief, const SolverOptions& solver,
+                           Solution& solution);
   [[nodiscard]] bool is_far(const geometry::Pose& X_WC, const geometry::Matrix6d& metric) const;
   [[nodiscard]] bool on_map(const PerceivedEdge& edge) const;
   [[nodiscard]] float length_on_map(const SegmentTable& perceived, const geometry::Pose& X_WC) const;

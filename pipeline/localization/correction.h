@@ -72,7 +72,7 @@ struct Correction {
   float agreement =
       0.0F;  ///< of image and map, 0..1: the length of edges that both hold over the length that either has.
   double cost =
-      0.0;  ///< the solver's: robust squared distances in standard deviations and the prior's, summed, before the noise was measured.
+      0.0;  ///< the solver's: robust squared distances in standard deviations and the prior's, summed, at X_WC with the stated noise.
   float error_log_odds =
       0.0F;  ///< that a searched pose is more than 5 cm or 1.5 degrees off (log_odds_of_error); 0 when tracking.
   float prior_chi2 = 0.0F;

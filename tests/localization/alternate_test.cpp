@@ -48,5 +48,29 @@ TEST(Alternation, ASettlingPoseIsHeldByTheLinesThatFit) {
   EXPECT_LT(settled, 0.01);
 }
 
+// From a belief that is sure and off, a little noise in the matches moves the pose far: its cost is that of where it comes to, the prior's in it.
+TEST(Alternation, ItsCostIsThatOfThePoseThatTheMeasuredNoiseGives) {
+  const world::Map map = small_room();
+  const geometry::Camera camera = geometry::Camera{}.scaled_to(320, 240);
+  const LocalizerParameters parameters;
+  Perception perception(camera);
+  render::DepthRaster raster(map, {});
+  Alternation alternation(map, parameters, raster, camera, Perception::kMostSegments);
+  UnlimitedBudget budget;
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture picture(map, truth, camera, 0.5, 1);
+  ASSERT_EQ(perception.perceive(picture.view(), nullptr), Reason::kNone);
+  for (const double scale : {0.01, 0.03, 0.1}) {
+    const Belief belief(prior_at(in_small_room(1.01, 1.6, 0.2), PriorSigmas::floor().times(scale)));
+    const AlternateOptions options{.rounds = 8, .radius_px = 8.0F, .measured_noise = true};
+    const Estimate estimate = alternation.refine(belief.prior.X_WC, belief, perception.edges(), options, budget);
+    ASSERT_TRUE(estimate.solved);
+    const auto lines = alternation.distances_from(estimate.solution.X_WC, perception.edges(), 4.0F);
+    const double there =
+        cost_of(lines, estimate.solution.X_WC, belief.prior, belief.information, camera, options.robust).sum;
+    EXPECT_NEAR(estimate.solution.cost, there, 0.01 * there) << scale;
+  }
+}
+
 }  // namespace
 }  // namespace cgsr::localization
