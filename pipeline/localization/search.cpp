@@ -112,6 +112,7 @@ void Search::begin(const Belief& belief) {
       std::min(static_cast<double>(parameters_.max_hypotheses), std::ceil(parameters_.hypotheses_per_cell * cells_)));
   next_start_ = 0;
   next_finalist_ = 0;
+  most_expected_ = 0;
   next_neighbour_ = 0;
   next_judged_ = 0;
   walk_ = 0;
@@ -188,6 +189,7 @@ bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceive
     const auto estimate = refinement_.refine(finalists_[next_finalist_].X_WC, belief, perceived, options, budget);
     if (!estimate) return false;
     ++next_finalist_;
+    most_expected_ = std::max(most_expected_, estimate->expected);
     keep(*estimate);
   }
   return true;
@@ -250,7 +252,9 @@ bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, Wor
 }
 
 void Search::verdict() {
+  // Where no pose can be solved it is for want of matches, not of a map.
   best_ = Estimate{};
+  best_.expected = most_expected_;
   lead_ = 1.0F;
   const std::size_t count = next_judged_;
   if (count == 0) return;

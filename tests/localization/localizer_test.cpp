@@ -81,6 +81,15 @@ TEST(Localizer, CorrectsANarrowPriorFromOneImage) {
   }
 }
 
+/// What no map holds: strips of tape on a wall, all upright.
+world::Map wall_of_upright_strips() {
+  MapBuilder b;
+  const std::uint32_t wall = b.rectangle({2.5F, 8, -4}, {0, -16, 0}, {0, 0, 8}, b.grey(0.2F));
+  for (const float left_m : {-0.6F, -0.2F, 0.2F, 0.6F})
+    b.rectangle({2.498F, left_m, -3}, {0, -0.04F, 0}, {0, 0, 6}, b.grey(0.8F), wall);
+  return b.map;
+}
+
 /// Strips of tape on a wall, all level: what is upright of them is too short to be seen.
 world::Map wall_of_strips() {
   MapBuilder b;
@@ -171,6 +180,21 @@ TEST(Localizer, FindsThePoseInAWidePrior) {
     EXPECT_LT(error.direction_deg, 0.5);
   }
   EXPECT_GE(corrected, 5);
+}
+
+// The map is there to be expected: an image that matches none of it is a failure of the search, which a tracker counts.
+TEST(Localizer, ASearchThatFindsNoMatchesSaysSo) {
+  const world::Map map = wall_of_strips();
+  const Pose truth = in_small_room(0.0, 0.0, 0.0);
+  const Picture picture(wall_of_upright_strips(), truth, room_camera(), 1.5, 1);
+  for (const double scale : {0.3, 1.0}) {
+    Localizer localizer(map, room_camera(), {});
+    int images = 0;
+    const Correction answer =
+        answer_of(localizer, picture.view(), prior_at(truth, PriorSigmas::floor().times(scale)), images);
+    EXPECT_EQ(answer.reason, Reason::kTooFewMatches) << scale << ": " << to_string(answer.reason);
+    EXPECT_GE(answer.segments, 4);
+  }
 }
 
 // Eight starts an image: the search goes on over several, and hypotheses move with the camera.
