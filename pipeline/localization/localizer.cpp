@@ -162,7 +162,8 @@ void Localizer::State::judge(const Estimate& estimate, const std::optional<Stand
   answer.covariance = covariance;
 }
 
-// With the noise that the matches show: a wide prior must not pull a pose off what is seen well.
+// With the noise that the matches show: a wide prior must not pull a pose off what is seen well. In this image alone: the best start may have been
+// refined in an earlier one.
 Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belief) {
   if (!estimate.solved || parameters.method != Method::kGlCorrect) return estimate;
   AlternateOptions options;
@@ -171,8 +172,7 @@ Estimate Localizer::State::settled(const Estimate& estimate, const Belief& belie
   options.measured_noise = true;
   options.by_part = true;
   UnlimitedBudget whole;
-  const Estimate better = alternation.refine(estimate.solution.X_WC, belief, perception.edges(), options, whole);
-  return better.solved ? better : estimate;
+  return alternation.refine(estimate.solution.X_WC, belief, perception.edges(), options, whole);
 }
 
 AlternateOptions Localizer::State::options_of(const PriorShape& shape) const {

@@ -134,6 +134,7 @@ void Search::carried(const Pose& X_C0C1) {
   for (Candidate& candidate : finalists_) candidate.X_WC = candidate.X_WC * X_C0C1;
   for (Estimate& estimate : estimates_) estimate.solution.X_WC = estimate.solution.X_WC * X_C0C1;
   for (Estimate& estimate : judged_) estimate.solution.X_WC = estimate.solution.X_WC * X_C0C1;
+  best_.solution.X_WC = best_.solution.X_WC * X_C0C1;
   refinement_.carried(X_C0C1);
 }
 
@@ -235,16 +236,20 @@ bool Search::try_neighbours(const Belief& belief, const SegmentTable& perceived,
   return true;
 }
 
-// The best and those that come next, with the gate's figures and the noise that their matches show (a wide prior must not pull a pose off
-// what is seen well): the last word is between them.
-bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
+// With the gate's figures and the noise that its matches show: a wide prior must not pull a pose off what is seen well.
+std::optional<Estimate> Search::judged_at(const Pose& X_WC, const Belief& belief, const SegmentTable& perceived,
+                                          WorkBudget& budget) {
   const AlternateOptions options{.rounds = parameters_.max_iterations,
                                  .radius_px = static_cast<float>(parameters_.min_match_radius_px),
                                  .settle = true,
                                  .measured_noise = true};
+  return refinement_.refine(X_WC, belief, perceived, options, budget);
+}
+
+// The best and those that come next: the last word is between them.
+bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget) {
   while (next_judged_ < std::min(kJudged, estimates_.size())) {
-    const auto estimate =
-        refinement_.refine(estimates_[next_judged_].solution.X_WC, belief, perceived, options, budget);
+    const auto estimate = judged_at(estimates_[next_judged_].solution.X_WC, belief, perceived, budget);
     if (!estimate) return false;
     judged_[next_judged_++] = *estimate;
   }
@@ -291,8 +296,16 @@ bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudg
     stage_ = Stage::kVerdict;
   }
   if (stage_ == Stage::kVerdict) {
+    const bool judged_before = next_judged_ > 0;
     if (!judge_best(belief, perceived, budget)) return false;
     verdict();
+    stage_ = judged_before && best_.solved ? Stage::kConfirm : Stage::kIdle;
+  }
+  // A pose that earlier images speak for is claimed for this one: by what this one says of it.
+  if (stage_ == Stage::kConfirm) {
+    const auto estimate = judged_at(best_.solution.X_WC, belief, perceived, budget);
+    if (!estimate) return false;
+    best_ = *estimate;
     stage_ = Stage::kIdle;
   }
   return true;

@@ -56,7 +56,7 @@ class Search {
   [[nodiscard]] int starts() const { return static_cast<int>(next_start_); }
 
  private:
-  enum class Stage : std::uint8_t { kIdle, kStarts, kFinalists, kNeighbours, kVerdict };
+  enum class Stage : std::uint8_t { kIdle, kStarts, kFinalists, kNeighbours, kVerdict, kConfirm };
   static constexpr std::size_t kJudged = 5;  ///< poses that are compared at the end.
   struct Candidate {
     geometry::Pose X_WC = geometry::Pose::Identity();
@@ -68,6 +68,8 @@ class Search {
   bool try_neighbours(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget, int& units);
   [[nodiscard]] geometry::Pose neighbour() const;
   bool judge_best(const Belief& belief, const SegmentTable& perceived, WorkBudget& budget);
+  std::optional<Estimate> judged_at(const geometry::Pose& X_WC, const Belief& belief, const SegmentTable& perceived,
+                                    WorkBudget& budget);
   void verdict();
   void keep(const Estimate& estimate);
   [[nodiscard]] double motion_between(const geometry::Pose& a, const geometry::Pose& b) const;

@@ -197,6 +197,37 @@ TEST(Localizer, ASearchThatFindsNoMatchesSaysSo) {
   }
 }
 
+// A pose is claimed for the image of the answer, however much earlier ones said for it.
+TEST(Localizer, ASearchClaimsNothingForAnImageThatDoesNotShowIt) {
+  const world::Map map = small_room();
+  const Pose truth = in_small_room(1.0, 1.6, 0.2);
+  const Picture shown(map, truth, room_camera(), 1.5, 4);
+  const Picture other(map, in_small_room(1.6, 2.4, 2.2), room_camera(), 1.5, 4);
+  const PriorSigmas middling{.x_m = 0.02, .y_m = 0.02, .z_m = 0.005, .heading_rad = 0.015, .tilt_rad = 0.004};
+  struct Result {
+    Correction answer;
+    int images;
+  };
+  for (const PriorSigmas& sigmas : {middling, PriorSigmas::floor()}) {
+    const auto search = [&](int images_shown) {
+      Localizer localizer(map, room_camera(), {});
+      Result result{{.reason = Reason::kSearching}, 0};
+      for (; result.answer.reason == Reason::kSearching && result.images < 1000; ++result.images) {
+        CountedBudget budget(14);
+        const Picture& picture = result.images < images_shown ? shown : other;
+        result.answer = localizer.correct(picture.view(), prior_at(truth, sigmas), budget);
+      }
+      return result;
+    };
+    const Result whole = search(1000);
+    ASSERT_TRUE(whole.answer.corrected) << to_string(whole.answer.reason);
+    for (int last = 1; last <= 4; ++last) {
+      const Result changed = search(whole.images - last);
+      EXPECT_FALSE(changed.answer.corrected) << last << " of " << whole.images << " images show something else";
+    }
+  }
+}
+
 // Eight starts an image: the search goes on over several, and hypotheses move with the camera.
 TEST(Localizer, SearchesOverImagesOfAMovingCamera) {
   const world::Map map = small_room();
