@@ -60,6 +60,12 @@ void PoseTracker::start(const Prior& prior) {
   turned_rad_ = 0.0;
 }
 
+void PoseTracker::take_over(const Prior& confirmed) {
+  start(confirmed);
+  now_.state = TrackState::kTracking;
+  now_.covariance = localizer_->in_world(belief_);
+}
+
 void PoseTracker::moved(const Pose& X_R0R1) {
   if (!X_R0R1.matrix().allFinite()) return;
   const Pose X_C0C1 = X_RC_.inverse() * X_R0R1 * X_RC_;

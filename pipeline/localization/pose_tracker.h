@@ -98,6 +98,10 @@ class PoseTracker {
   /// Begins at a pose: of the robot's configuration, the last run's file or a marker.
   void start(const Prior& prior);
 
+  /// Goes on from a pose that the last image confirmed to somebody else, as a search of the whole map: kTracking.
+  /// \param confirmed  in the map as it is, as Correction's.
+  void take_over(const Prior& confirmed);
+
   /// The robot moved by X_R0R1 since the last call, as its odometry says, aligned to the coming image's exposure.
   void moved(const geometry::Pose& X_R0R1);
 

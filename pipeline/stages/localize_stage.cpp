@@ -94,7 +94,7 @@ PoseEstimate LocalizeStage::seek_pose(WorkBudget& budget, const ImageView& image
   if (phase == Phase::kFound) {
     seeks_ = false;
     pose.camera = whole_map_->found();
-    tracker_.start({pose.camera.X_WC, pose.camera.correction.covariance});
+    tracker_.take_over({pose.camera.X_WC, pose.camera.correction.covariance});
     tell(pose);
   } else if (is_without_answer(phase) && phase != before) {
     turn_led_nowhere(pose);

@@ -38,6 +38,16 @@ TEST_F(SeeksFirstPose, TurnsUntilItKnowsAndLetsItsTaskDriveThen) {
   EXPECT_EQ(robot_.pose().state(), "tracking") << "from there on the pose is carried on";
 }
 
+// An image that shows nothing just then does not take it away.
+TEST_F(SeeksFirstPose, KeepsThePoseThatItFoundThroughADarkImage) {
+  while (robot_.step().state == "seek_first_pose" && robot_.images < 400) {
+  }
+  ASSERT_EQ(robot_.pose().state(), "tracking");
+  robot_.step(true);
+  EXPECT_EQ(robot_.pose().state(), "tracking");
+  EXPECT_TRUE(robot_.pose().known());
+}
+
 TEST_F(SeeksFirstPose, TurnsBackToAViewThatConfirmsWhereThatIsShorter) {
   robot_.X_WR = geometry::pose_on_floor(1.5, 0.8, 3.0);
   double farthest_rad = 0.0;
