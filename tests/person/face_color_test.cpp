@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -23,11 +24,11 @@ Picture somebody(const Rgb& shirt, const Box& face = kFaceBox) {
   return picture;
 }
 
-void train(PersonTracker& tracker, const Rgb& shirt) {
+void train(PersonTracker& tracker, const Rgb& shirt, Label person = 1) {
   const Picture picture = somebody(shirt);
-  for (int image = 0; image < 30; ++image) tracker.update({picture.view(), face_of(1)});
-  ASSERT_TRUE(tracker.shirts().knows(1));
-  ASSERT_TRUE(tracker.face_colors().knows(1));
+  for (int image = 0; image < 30; ++image) tracker.update({picture.view(), face_of(person)});
+  ASSERT_TRUE(tracker.shirts().knows(person));
+  ASSERT_TRUE(tracker.face_colors().knows(person));
 }
 
 TEST(FaceColor, CarriesAPersonWhoseShirtIsCovered) {
@@ -52,6 +53,22 @@ TEST(FaceColor, IsFollowedWhenTurnedAwayByTheHairAlone) {
   Picture picture;
   draw_head(picture, kFaceBox, kHair);
   for (int image = 0; image < 20; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, 1) << image;
+}
+
+TEST(FaceColor, ThatSeveralPeopleHaveIsTheirsWhoseHeadIsFollowed) {
+  PersonTracker tracker;
+  train(tracker, kRed);
+  train(tracker, kBlue, 2);
+  const Picture covered = somebody(kWall);
+  for (const auto& [person, shirt] : {std::pair{1, kRed}, {2, kBlue}, {1, kRed}}) {
+    while (!tracker.face_is_due()) tracker.update({somebody(shirt).view()});  // the last face names whom it is above
+    ASSERT_EQ(tracker.update({somebody(shirt).view()}).person, person);
+    for (int image = 0; image < 10; ++image) {
+      const auto sighting = tracker.update({covered.view()});
+      EXPECT_EQ(sighting.person, person) << image;
+      EXPECT_EQ(sighting.source, PersonSource::kFaceColor) << image;
+    }
+  }
 }
 
 TEST(FaceColor, IsNoProofElsewhereNorForever) {

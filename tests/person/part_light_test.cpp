@@ -1,5 +1,7 @@
 // The light on a shirt, by its mean colour.
 
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "pipeline/person/colors/color_labels.h"
@@ -30,6 +32,17 @@ TEST(PartLight, IsThatInWhichThePlaceAndWhatIsBesideItHaveChangedAlike) {
   EXPECT_NEAR(light.of(1)->g, 0.56, 1e-9);
   light.take_back(1);
   EXPECT_NEAR(light.of(1)->r, 0.8, 1e-9);
+}
+
+TEST(PartLight, KeepsWhomItIsToldTo) {
+  PartLight light;
+  for (const Label person : {1, 2, 3}) light.learn(person, kAssumed);
+  light.keep(std::array<Label, 2>{3, 1});
+  EXPECT_TRUE(light.of(1));
+  EXPECT_FALSE(light.of(2));
+  EXPECT_TRUE(light.of(3));
+  light.keep({});
+  EXPECT_FALSE(light.of(1));
 }
 
 TEST(PartLight, StaysWhereNoLightExplainsTheChange) {

@@ -39,6 +39,10 @@ void PartLight::forget(Label person) {
   std::erase_if(parts_, [person](const Part& part) { return part.person == person; });
 }
 
+void PartLight::keep(std::span<const Label> people) {
+  std::erase_if(parts_, [people](const Part& part) { return std::ranges::find(people, part.person) == people.end(); });
+}
+
 // Nothing: no light, or none that changed both alike, explains what is seen; or nothing has changed.
 std::optional<color::Light> PartLight::light_by(const Part& part, const PartColors& now) const {
   constexpr double kMeasured = 0.04;  // how well two means are alike where nothing changes

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pipeline/color/learn/light.h"
@@ -50,6 +51,8 @@ class PartLight {
   /// The part was learned under this light.
   void learn(Label person, const color::Light& assumed);
   void forget(Label person);
+  /// Forgets everybody else.
+  void keep(std::span<const Label> people);
 
   /// The part was found and looks like this. \return whether the light has changed and it is to be looked for under another one, which of() tells.
   bool found(Label person, const PartColors& colors);

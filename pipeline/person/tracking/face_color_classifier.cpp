@@ -93,12 +93,18 @@ std::optional<Classification> FaceColorClassifier::classify(const PersonImage& i
 }
 
 void FaceColorClassifier::confirm(Label person, const Box& head) {
+  if (preferred_ != person && colors_.knows(person)) {
+    colors_.prefer(person);
+    preferred_ = person;
+    map_is_due_ = true;
+  }
   head_ = PersonHead{person, head};
   unseen_ = unconfirmed_ = 0;
 }
 
 void FaceColorClassifier::learn(const PersonImage& input, const FaceSighting& face) {
   colors_.learn(*face.match.label, head_colors(input.image, face.box), other_colors(input.image, face.box));
+  preferred_ = face.match.label;
   map_is_due_ = true;
   since_trained_ = 1;
 }
@@ -122,6 +128,7 @@ void FaceColorClassifier::forget(Label person) {
   colors_.forget(person);
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
+  if (preferred_ == person) preferred_.reset();
   if (head_ && head_->person == person) head_.reset();
 }
 

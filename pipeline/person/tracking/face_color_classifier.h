@@ -46,7 +46,8 @@ struct FaceColorParameters {
 };
 
 /// Another secondary characteristic: the colours of skin and hair (6.3.1). They are everybody's, so they are looked for only where the head of the person was
-/// an image before (the motion cue), and tell for a limited time who it is when neither face nor shirt does.
+/// an image before (the motion cue), and tell for a limited time who it is when neither face nor shirt does. Those that several people have are the
+/// person's whose head was followed last.
 ///
 /// Threads: one. Allocates when it is trained.
 class FaceColorClassifier final : public Classifier<PersonImage> {
@@ -84,6 +85,8 @@ class FaceColorClassifier final : public Classifier<PersonImage> {
   std::optional<Label> seen_;  // by face, in the images before this one
   int seen_images_ = 0;
   int since_trained_ = 0;  // images; 0: never
+  std::optional<Label>
+      preferred_;  // has the colours that others have too: who was learned, or whose head was followed, last
   std::optional<PersonHead> head_;
   int unseen_ = 0;       // images since the head was seen by anything
   int unconfirmed_ = 0;  // images since it was seen by face or shirt

@@ -332,6 +332,7 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   colors_.learn(person, region_colors(input.image, regions.shirt), background);
   if (preferred_) colors_.prefer(*preferred_);
   if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);
+  light_.keep(colors_.order());
   supposed_ = false;
   map_is_due_ = true;
 }
