@@ -45,7 +45,8 @@ class LiveLoops {
     capture_beat_ = heartbeats.add("capture", 3 * capture.period() + seconds(0.5), now);
     vision_beat_ = heartbeats.add("vision", 3 * capture.period() + seconds(0.5), now);
     motion_beat_ = heartbeats.add("motion", seconds(0.2), now);
-    // Lamps that hang cost the mask; an arming line that hangs has to be noticed.
+    // An arming line that hangs has to be noticed. Lamps are switched in the same step as it is read: one whose driver hangs
+    // costs the mask, and where there is an arming line it also stops and disarms the robot.
     if (!state.lines().arming.empty()) {
       switch_beat_ = heartbeats.add("switches", tasks::kMaxArmingReportAge, now);
     }

@@ -33,13 +33,14 @@ inline constexpr Duration kMaxArmingReportAge = seconds(0.5);
 /// leave the line's last state in force. Without a first report there is no arming line, and none is ever old.
 ///
 /// Threads: report() from the switch worker, the first before any thread starts; is_old() from the motion thread too.
-/// Relaxed: the time is the message, and the ring of arm requests orders what it guards. Ours.
+/// report() releases and is_old() acquires: a motion cycle to which a report is new sees the request to disarm that was pushed
+/// before it. Ours.
 class ArmingReport {
  public:
-  void report(MonoTime now) { at_.store(now, std::memory_order_relaxed); }
+  void report(MonoTime now) { at_.store(now, std::memory_order_release); }
 
   [[nodiscard]] bool is_old(MonoTime now) const {
-    return now - kMaxArmingReportAge > at_.load(std::memory_order_relaxed);
+    return now - kMaxArmingReportAge > at_.load(std::memory_order_acquire);
   }
 
  private:

@@ -16,18 +16,18 @@ std::optional<std::string> SwitchTask::watch_arming() {
   if (lines_.arming.empty()) return std::nullopt;
   const auto level = switches_.read(lines_.arming);
   const MonoTime now = clock_.now();
-  if (level && level_ && links_.arming_report.is_old(now)) {  // motion has stopped the robot meanwhile
+  const bool fell_silent = !level && !silent_;
+  // Motion has stopped the robot meanwhile, or not quite yet, and an arming may be pending: an edge may have been missed.
+  const bool hung = level && level_ && links_.arming_report.is_old(now);
+  if (fell_silent || hung) {
+    // Ahead of the report: whoever takes the line for read has the request. One that finds no room is repeated at the
+    // next look, and the report grows older until then.
+    if (!links_.arm_requests.push(ArmRequest::kDisarm)) return std::nullopt;
     level_.reset();
     silent_ = true;
   }
-  links_.arming_report.report(now);  // before a request, which motion would refuse else
-  if (!level) {
-    level_.reset();
-    // A request that finds no room is repeated at the next look.
-    if (silent_ || !links_.arm_requests.push(ArmRequest::kDisarm)) return std::nullopt;
-    silent_ = true;
-    return level.error().message;
-  }
+  links_.arming_report.report(now);  // before a request to arm, which motion would refuse else
+  if (!level) return fell_silent ? std::optional(level.error().message) : std::nullopt;
   if (level_ && *level_ != *level) {
     // A request that finds no room is repeated at the next look, for the level is not taken over.
     if (!links_.arm_requests.push(*level ? ArmRequest::kArm : ArmRequest::kDisarm)) return std::nullopt;

@@ -22,7 +22,7 @@ struct SwitchLines {
 
 /// Watches the arming line, whose edges are requests to arm and disarm, and switches lamps as vision asks, acknowledging each with the time at which it
 /// was done. A line that does not answer disarms; one that answers again is as at boot: its level does not arm, its next rising edge does. So is one that was
-/// not read for kMaxArmingReportAge, for a call hung. Not real-time: a line may block for milliseconds.
+/// not read for kMaxArmingReportAge, for a call hung: it disarms once it is read again. Not real-time: a line may block for milliseconds.
 class SwitchTask {
  public:
   SwitchTask(hal::Switches& switches, SwitchLines lines, const Clock& clock, Links& links)

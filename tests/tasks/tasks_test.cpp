@@ -165,8 +165,18 @@ class ArmingReportFault : public ::testing::Test {
  protected:
   ArmingReportFault() {
     EXPECT_TRUE(switches_.start());
-    EXPECT_TRUE(motion_loop_.start());
     links_.images_in_time = true;
+    make_motion();
+  }
+
+  /// \param arm  as --arm does.  \param armed_at_start  as the robot's file does.
+  void make_motion(bool arm = false, bool armed_at_start = false) {
+    MotionParameters parameters = anywhere();
+    parameters.armed_at_start = armed_at_start;
+    motion_.reset();
+    motion_loop_.emplace(std::make_unique<hal::KinematicDrive>(), parameters, MotionLoop::Mode::kLive);
+    EXPECT_TRUE(motion_loop_->start());
+    motion_.emplace(*motion_loop_, stop_, Duration::zero(), arm, links_);
   }
 
   static MotionParameters anywhere() {
@@ -184,20 +194,26 @@ class ArmingReportFault : public ::testing::Test {
         next_look_ = now_ + kSwitchPeriod;
       }
       EXPECT_TRUE(links_.goals.push(Goal{{0.2, 0.0}, now_}));
-      motion_.step(now_);
+      motion_->step(now_);
       while (const auto status = links_.motions.pop()) status_ = *status;
     }
     return status_;
   }
   void press(bool on) { switches_.press("arm", on); }
+  /// Until the cycle after a look at the line.
+  void run_past_a_look() {
+    do {
+      run(to_seconds(kMotionPeriod));
+    } while (next_look_ != now_ - kMotionPeriod + kSwitchPeriod);
+  }
 
   hal::DummySwitches switches_{{{"arm", hal::LineDirection::kInput}}};
   Links links_;
   SimulatedClock clock_;
   StopRequest stop_;
   SwitchTask worker_{switches_, {"arm", {}}, clock_, links_};
-  MotionLoop motion_loop_{std::make_unique<hal::KinematicDrive>(), anywhere(), MotionLoop::Mode::kLive};
-  MotionTask motion_{motion_loop_, stop_, Duration::zero(), false, links_};
+  std::optional<MotionLoop> motion_loop_;
+  std::optional<MotionTask> motion_;
   MonoTime now_{};
   MonoTime next_look_{};
   MotionStatus status_;
@@ -237,6 +253,60 @@ TEST_F(ArmingReportFault, AnEdgeThatFellIntoTheHangDoesNotArm) {
   run(0.1);
   press(true);
   EXPECT_TRUE(run(0.1).armed);
+}
+
+// Motion never takes the report for old: the worker reads the line a moment before it would.
+TEST_F(ArmingReportFault, AHangThatEndsBetweenTwoMotionCyclesDisarms) {
+  run(1.5);
+  press(true);
+  ASSERT_TRUE(run(0.5).armed);
+  run_past_a_look();
+  const MotionStatus hung = run(to_seconds(kMaxArmingReportAge), true);
+  ASSERT_TRUE(hung.armed) << "not old yet";
+  press(false);
+  const MotionStatus reports_again = run(to_seconds(kMotionPeriod));
+  EXPECT_FALSE(reports_again.armed);
+  EXPECT_EQ(reports_again.cause, StopCause::kDisarmed);
+  EXPECT_FALSE(run(1.0).armed);
+}
+
+// An arming that waits for the images does not outlast a hang: the switch may be off since.
+TEST_F(ArmingReportFault, AHangEndsAnArmingThatIsPending) {
+  for (const bool by_command : {true, false}) {
+    for (const bool hangs : {false, true}) {
+      make_motion(by_command, !by_command);
+      links_.images_in_time = false;
+      press(true);
+      ASSERT_FALSE(run(1.5).armed);
+      const MotionStatus hung = run(1.0, hangs);
+      ASSERT_FALSE(hung.armed);
+      if (hangs) press(false);
+      links_.images_in_time = true;
+      for (int cycle = 0; cycle < 100; ++cycle) {
+        const bool armed = run(to_seconds(kMotionPeriod)).armed;
+        if (hangs) {
+          ASSERT_FALSE(armed) << "by " << (by_command ? "command" : "configuration") << ", cycle " << cycle;
+        }
+      }
+      EXPECT_EQ(status_.armed, !hangs);
+    }
+  }
+}
+
+// A disarm that finds no room leaves the report old, and is repeated.
+TEST_F(ArmingReportFault, AHangDisarmsThoughTheRequestsAreFullAtItsEnd) {
+  run(1.5);
+  run_past_a_look();
+  while (links_.arm_requests.push(ArmRequest::kNone)) {
+  }
+  clock_.advance_to(now_ + seconds(1.0));
+  EXPECT_EQ(worker_.step(), std::nullopt);
+  EXPECT_TRUE(links_.arming_report.is_old(clock_.now())) << "nothing may be armed yet";
+  while (links_.arm_requests.pop()) {
+  }
+  EXPECT_TRUE(worker_.step());
+  EXPECT_EQ(links_.arm_requests.pop(), ArmRequest::kDisarm);
+  EXPECT_FALSE(links_.arming_report.is_old(clock_.now()));
 }
 
 TEST_F(ArmingReportFault, ALineThatWasNeverReadDoesNotLetArmByCommandEither) {
