@@ -178,7 +178,7 @@ StopCause MotionLoop::arm(MonoTime now, ArmRequest request, StopCause standing) 
   StopCause refusal = graver(standing, loop);
   if (refusal == StopCause::kNone) refusal = rearm_drive(now);
   if (refusal == StopCause::kNone) {
-    armed_ = true;
+    armed_ = was_armed_ = true;
     arm_when_possible_ = false;
     latched_ = StopCause::kNone;
   }

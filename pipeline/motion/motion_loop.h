@@ -47,6 +47,9 @@ class MotionLoop {
   /// Disarms, commands zero and closes the base. Idempotent; the destructor does it too.
   void stop();
 
+  /// Whether it ever was, in whatever mode. From the thread of step(), or once that has ended.
+  [[nodiscard]] bool was_armed() const { return was_armed_; }
+
  private:
   static constexpr int kStepsInTimeToArm = 100;
 
@@ -67,6 +70,7 @@ class MotionLoop {
   MotionParameters parameters_;
   Mode mode_;
   bool armed_ = false;
+  bool was_armed_ = false;
   bool arm_when_possible_;
   StopCause latched_ = StopCause::kNone;
   std::optional<Goal> goal_;

@@ -7,6 +7,7 @@
 
 #include "platform/replace_file.h"
 #include "src/input/pose_file.h"
+#include "src/input/small_file.h"
 #include "src/output/overlay.h"
 #include "src/output/text_file.h"
 
@@ -14,6 +15,7 @@ namespace cgsr::boot {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kMaxPoseText_bytes = 64U << 20U;  // as boot_pose() reads
 
 localization::Prior prior_on_floor(const geometry::Pose& X_WC, double sigma_m, double sigma_rad) {
   auto sigmas = localization::PriorSigmas::floor();
@@ -54,8 +56,19 @@ Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camer
   return boot;
 }
 
-Result<void> withdraw_pose(const std::filesystem::path& file) {
-  return remove_file(file);
+Result<std::string> withdraw_pose(const std::filesystem::path& file) {
+  Result<std::string> text;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(file, error)) {
+    text = app::read_small_file(file, kMaxPoseText_bytes, "a file of poses");
+    if (!text) return text;
+  }
+  if (auto removed = remove_file(file); !removed) return tl::unexpected(removed.error());
+  return text;
+}
+
+Result<void> put_back_pose(const std::filesystem::path& file, const std::string& text) {
+  return app::write_file(file, text);
 }
 
 Result<void> leave_pose(const std::filesystem::path& file, const geometry::Pose& X_WR) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "pipeline/geometry/camera.h"
 #include "pipeline/localization/correction.h"
@@ -25,8 +26,11 @@ Result<BootPose> boot_pose(const config::StartPose& start, const geometry::Camer
 
 /// Takes away what the last run left, which is outdated once the robot moves: a run that ends lost, is killed or loses power must leave no
 /// pose to the next one. To be called after boot_pose() and before the first command to the base. A file that is not there is no error. Ours.
-/// \return why it stays, with the file: the run must then not begin.
-Result<void> withdraw_pose(const std::filesystem::path& file);
+/// \return what it held, for put_back_pose(), empty where there was none; or why it stays, with the file: the run must then not begin.
+Result<std::string> withdraw_pose(const std::filesystem::path& file);
+
+/// Puts back what withdraw_pose() took away, for the robot has not moved since; whole or not at all.
+Result<void> put_back_pose(const std::filesystem::path& file, const std::string& text);
 
 /// Leaves the robot's pose on its floor for the next run, X_WR; whole or not at all.
 Result<void> leave_pose(const std::filesystem::path& file, const geometry::Pose& X_WR);

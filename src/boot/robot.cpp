@@ -28,12 +28,21 @@ void add_rings(const tasks::Links& links, sinks::Summary& summary) {
   });
 }
 
-/// Only a pose that the robot was sure of to the end is worth anything to the next run.
-Result<void> leave_pose_for_next_run(const RobotState& state) {
+/// A run that commands nothing outdates no pose, nor does one that knows none for want of a map.
+bool outdates_last_pose(const RobotState& state) {
+  const bool localizes = state.vision.map && state.calibration.camera;
+  return localizes && !state.setup.options.dry_run && !state.setup.config.localization.start.file.empty();
+}
+
+/// Only a pose that the robot was sure of to the end is worth anything to the next run; or the last run's, where it never moved.
+/// \param last_pose  what was withdrawn; empty: nothing.
+Result<void> leave_pose_for_next_run(const RobotState& state, const std::string& last_pose) {
   const behavior::PlanarPose& robot = state.outputs.statistics->run().last_pose.robot;
   const std::string& file = state.setup.config.localization.start.file;
-  if (file.empty() || !robot.known) return {};
-  return leave_pose(file, geometry::pose_on_floor(robot.x_m, robot.y_m, robot.heading_rad));
+  if (file.empty()) return {};
+  if (robot.known) return leave_pose(file, geometry::pose_on_floor(robot.x_m, robot.y_m, robot.heading_rad));
+  if (last_pose.empty() || state.devices.base->was_armed()) return {};
+  return put_back_pose(file, last_pose);
 }
 
 }  // namespace
@@ -57,13 +66,15 @@ Robot::Check Robot::check(const config::Robot& config) {
 }
 
 Result<void> Robot::run(StopRequest& stop) {
-  const std::string& last_pose = state_.setup.config.localization.start.file;
-  if (!last_pose.empty()) {
-    if (auto withdrawn = withdraw_pose(last_pose); !withdrawn) return withdrawn;
+  std::string last_pose;
+  if (outdates_last_pose(state_)) {
+    auto withdrawn = withdraw_pose(state_.setup.config.localization.start.file);
+    if (!withdrawn) return tl::unexpected(withdrawn.error());
+    last_pose = std::move(*withdrawn);
   }
   Result<void> done = state_.setup.live() ? run_live(state_, stop) : run_lock_step(state_, stop);
   state_.outputs.sinks.finish();
-  if (auto left = leave_pose_for_next_run(state_); !left && done) return left;
+  if (auto left = leave_pose_for_next_run(state_, last_pose); !left && done) return left;
   return done;
 }
 

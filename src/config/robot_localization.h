@@ -39,9 +39,11 @@ struct StartPose {
                  "The heading from the world's x axis, positive to the left.");
     visit.number("sigma_m", self.sigma_m, {0.001, 10.0}, "m", "The standard deviation of each coordinate.");
     visit.number("sigma_deg", self.sigma_deg, {0.01, 90.0}, "deg", "The standard deviation of the heading.");
-    visit.path(
-        "file", self.file,
-        "The file in which a run stores its last pose; the next run prefers it to the pose above; empty means none.");
+    visit.path("file", self.file,
+               "The file in which a run that knows its pose at its end stores it; empty means none. The next run "
+               "prefers it to the pose above and takes the file away when it begins; at its end it stores its own "
+               "pose, or puts the old one back where it knows none and the base was never armed. A dry run does not "
+               "take it away, nor does a run without a map.");
     visit.section("marker", self.marker,
                   "A marker at a known place that is searched for in the first image when there is no such file");
     visit.flag(

@@ -150,21 +150,73 @@ TEST_F(RunReplay, ALostCameraIsAFailure) {
   }
 }
 
-// What the last run left is outdated once the robot has moved: only a run that ends knowing its pose leaves one.
-TEST_F(RunReplay, ARunThatIsKilledOrEndsLostLeavesNoPoseToTheNext) {
-  const auto pose = scratch_ / "last.csv";
-  const auto csv = scratch_ / "run.csv";
-  write_text(scratch_ / "stores.toml", extended(live_config(), {{"localization.start.file", quoted(pose)}}));
-  for (const int signal : {SIGKILL, SIGTERM}) {
-    write_text(pose, "tx,ty,tz,qw,qx,qy,qz\n1.2,3.2,0,1,0,0,0\n");
+/// A robot whose images show nothing of its map: it never knows its pose.
+class LostRun : public RunReplay {
+ protected:
+  static constexpr auto kLastPose = "tx,ty,tz,qw,qx,qy,qz\n1.2,3.2,0,1,0,0,0\n";
+
+  /// \return the file of a robot that stores its pose.
+  std::string stores(const Keys& changes = {}) {
+    const std::string maps = CGSR_SOURCE_DIR "/config/maps/home/";
+    Keys keys = changes;
+    keys.insert({{"localization.start.file", quoted(pose_)},
+                 {"localization.start.sigma_m", "10"},
+                 {"localization.map", quoted(maps + "map.obj")},
+                 {"localization.camera", quoted(maps + "camera.yaml")},
+                 {"localization.mount", quoted(maps + "lamp-robot.toml")}});
+    write_text(scratch_ / "stores.toml", extended(live_config(), keys));
+    return scratch_ / "stores.toml";
+  }
+
+  /// Ends a run by a signal, after some images. \return what it left to the next one; empty: no file.
+  std::string left_by(const std::vector<std::string>& words, int signal) {
+    const auto csv = scratch_ / "run.csv";
     std::filesystem::remove(csv);
-    RunningCgsr running(arguments(scratch_ / "stores.toml", {"--csv", csv, "--force"}));
-    while (read_text(csv).size() < 1000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    write_text(pose_, kLastPose);
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--csv", csv, "--force"});
+    RunningCgsr running(all);
+    while (read_text(csv).size() < 20000 && !running.ended()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
     running.send(signal);
     const auto outcome = running.wait();
     EXPECT_EQ(outcome.exit_code, signal == SIGKILL ? 128 + SIGKILL : 0) << outcome.errors;
-    EXPECT_FALSE(std::filesystem::exists(pose)) << "signal " << signal;
+    return std::filesystem::exists(pose_) ? read_text(pose_) : "";
   }
+
+  const std::string pose_ = scratch_ / "last.csv";
+};
+
+// What the last run left is outdated once the robot has moved: only a run that ends knowing its pose leaves one.
+TEST_F(LostRun, KilledOrEndedInOrderItLeavesNoPoseToTheNext) {
+  const std::string config = stores();
+  EXPECT_EQ(left_by(arguments(config), SIGKILL), "");
+  EXPECT_EQ(left_by(arguments(config), SIGTERM), "");
+}
+
+TEST_F(LostRun, ThatWasNeverArmedPutsTheLastPoseBack) {
+  EXPECT_EQ(left_by(arguments(stores({{"motion.armed_at_start", "false"}})), SIGTERM), kLastPose);
+}
+
+// It commands nothing, or knows of no map: killed as well it takes nothing away.
+TEST_F(LostRun, ThatIsDryOrWithoutAMapLeavesTheLastPoseWhereItIs) {
+  EXPECT_EQ(left_by(arguments(stores(), {"--dry-run"}), SIGKILL), kLastPose);
+  const Keys no_map{{"localization.map", quoted("")}};
+  EXPECT_EQ(left_by(arguments(stores(no_map)), SIGKILL), kLastPose);
+}
+
+// It may arm as a run may.
+TEST_F(LostRun, AProfileKeepsTheLastPoseAsARunDoes) {
+  write_text(pose_, kLastPose);
+  const auto profiled = [this](const std::string& config) {
+    return run_cgsr({"profile", "--config", config, "--input", scratch_ / "images", "--model", scratch_ / "m",
+                     "--duration", "2.5"});
+  };
+  const auto disarmed = profiled(stores({{"motion.armed_at_start", "false"}}));
+  ASSERT_EQ(disarmed.exit_code, 0) << disarmed.errors;
+  EXPECT_EQ(read_text(pose_), kLastPose);
+  const auto armed = profiled(stores());
+  ASSERT_EQ(armed.exit_code, 0) << armed.errors;
+  EXPECT_FALSE(std::filesystem::exists(pose_));
 }
 
 // Nothing moves in it, and the robot needs the pose for its run.

@@ -107,15 +107,24 @@ TEST(BootPose, WhatWasWithdrawnIsNotBelievedAgain) {
   config::StartPose start;
   start.x_m = 1.0;
   start.file = link.string();
-  EXPECT_TRUE(withdraw_pose(link)) << "the first run finds none";
+  const auto none = withdraw_pose(link);
+  ASSERT_TRUE(none) << "the first run finds none";
+  EXPECT_TRUE(none->empty());
   for (int run = 0; run < 2; ++run) {
     ASSERT_TRUE(leave_pose(link, geometry::pose_on_floor(4.0, -2.0, 0.5)));
-    ASSERT_TRUE(withdraw_pose(link));
+    const auto withdrawn = withdraw_pose(link);
+    ASSERT_TRUE(withdrawn);
     EXPECT_FALSE(std::filesystem::exists(file));
     EXPECT_TRUE(std::filesystem::is_symlink(link)) << "it says where the next pose goes";
     const auto boot = boot_pose(start, {}, mount(), {});
     ASSERT_TRUE(boot) << boot.error().message;
     EXPECT_EQ(boot->message, "the robot's file");
+    ASSERT_TRUE(put_back_pose(link, *withdrawn));
+    const auto unmoved = boot_pose(start, {}, mount(), {});
+    ASSERT_TRUE(unmoved) << unmoved.error().message;
+    EXPECT_LT(
+        ((geometry::pose_on_floor(4.0, -2.0, 0.5) * mount()).translation() - unmoved->prior.X_WC.translation()).norm(),
+        1e-5);
   }
 }
 
