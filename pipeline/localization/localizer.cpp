@@ -48,10 +48,10 @@ double size_m(const world::Map& map) {
   return bounds.isEmpty() ? 0.0 : static_cast<double>(bounds.diagonal().norm());
 }
 
-// Stronger's method works with all that it projects.
+// To the map and the method.
 LocalizerParameters fitted(LocalizerParameters parameters, const world::Map& map) {
   parameters.map_sigma_m = std::min(parameters.map_sigma_m, kMapSigmaOfSize * size_m(map));
-  if (parameters.method == Method::kStronger)
+  if (parameters.method == Method::kStronger)  // works with all that it projects
     parameters.max_pieces = std::max(parameters.max_pieces, static_cast<int>(map.edges.size()));
   if (parameters.method != Method::kGlCorrect) {
     parameters.search = false;

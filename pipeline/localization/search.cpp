@@ -112,7 +112,7 @@ void Search::begin(const Belief& belief) {
       std::min(static_cast<double>(parameters_.max_hypotheses), std::ceil(parameters_.hypotheses_per_cell * cells_)));
   next_start_ = 0;
   next_finalist_ = 0;
-  most_expected_ = 0;
+  expected_at_best_start_ = 0;
   next_neighbour_ = 0;
   next_judged_ = 0;
   walk_ = 0;
@@ -189,8 +189,8 @@ bool Search::refine_finalists(const Belief& belief, const SegmentTable& perceive
     units -= kFinalistUnits;
     const auto estimate = refinement_.refine(finalists_[next_finalist_].X_WC, belief, perceived, options, budget);
     if (!estimate) return false;
+    if (next_finalist_ == 0) expected_at_best_start_ = estimate->expected;
     ++next_finalist_;
-    most_expected_ = std::max(most_expected_, estimate->expected);
     keep(*estimate);
   }
   return true;
@@ -257,9 +257,10 @@ bool Search::judge_best(const Belief& belief, const SegmentTable& perceived, Wor
 }
 
 void Search::verdict() {
-  // Where no pose can be solved it is for want of matches, not of a map.
+  // Where no pose can be solved, it is for want of matches if the map shows something from the best start. What it shows from
+  // other starts of a wide prior does not count: some edge is nearly always within its reach.
   best_ = Estimate{};
-  best_.expected = most_expected_;
+  best_.expected = expected_at_best_start_;
   lead_ = 1.0F;
   const std::size_t count = next_judged_;
   if (count == 0) return;
@@ -301,7 +302,8 @@ bool Search::go_on(const Belief& belief, const SegmentTable& perceived, WorkBudg
     verdict();
     stage_ = judged_before && best_.solved ? Stage::kConfirm : Stage::kIdle;
   }
-  // A pose that earlier images speak for is claimed for this one: by what this one says of it.
+  // A pose that earlier images speak for is claimed for this one: by what this one says of it. Its lead over other poses is that
+  // of the search, for they are not looked at again.
   if (stage_ == Stage::kConfirm) {
     const auto estimate = judged_at(best_.solution.X_WC, belief, perceived, budget);
     if (!estimate) return false;

@@ -96,7 +96,7 @@ class Search {
   std::uint32_t start_count_ = 0;
   std::uint32_t next_start_ = 0;
   std::uint32_t next_finalist_ = 0;
-  int most_expected_ = 0;  ///< pieces of edges at any finalist.
+  int expected_at_best_start_ = 0;  ///< pieces of edges.
   std::uint32_t next_neighbour_ = 0;
   int walk_ = 0;
   float lead_ = 0.0F;

@@ -197,6 +197,20 @@ TEST(Localizer, ASearchThatFindsNoMatchesSaysSo) {
   }
 }
 
+// From beside the strips a wide prior's other starts see them: what stands before the bare wall, and in no map, is no failure.
+TEST(Localizer, ASearchBeforeABareWallExpectsNothing) {
+  const world::Map map = wall_of_strips();
+  const Picture picture(wall_of_upright_strips(), in_small_room(0.0, 0.0, 0.0), room_camera(), 1.5, 1);
+  for (const double left_m : {2.1, 2.2}) {
+    const Prior prior = prior_at(in_small_room(0.0, left_m, 0.0), PriorSigmas::floor().times(4.0));
+    Localizer localizer(map, room_camera(), {});
+    int images = 0;
+    const Correction answer = answer_of(localizer, picture.view(), prior, images);
+    EXPECT_EQ(answer.reason, Reason::kNothingExpected) << left_m << ": " << to_string(answer.reason);
+    EXPECT_GE(answer.segments, 4);
+  }
+}
+
 // A pose is claimed for the image of the answer, however much earlier ones said for it.
 TEST(Localizer, ASearchClaimsNothingForAnImageThatDoesNotShowIt) {
   const world::Map map = small_room();
