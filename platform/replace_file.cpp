@@ -118,8 +118,9 @@ Result<void> remove_file(const std::filesystem::path& path) {
   std::error_code error;
   const auto target = std::filesystem::canonical(path, error);
   if (error == std::errc::no_such_file_or_directory) return {};
+  const bool is_regular = !error && std::filesystem::is_regular_file(target, error);
   if (error) return fail(fmt::format("{}: cannot be taken away: {}", path.string(), error.message()));
-  if (!std::filesystem::is_regular_file(target, error)) return {};
+  if (!is_regular) return {};
   if (::unlink(target.c_str()) != 0) return refused(path, "cannot be taken away");
   sync_folder_of(target);
   return {};

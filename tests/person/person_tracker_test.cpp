@@ -392,6 +392,20 @@ TEST(PersonTracker, TrustsAShirtLessInTheDark) {
   EXPECT_EQ(tracker.update({picture.view(), face_of(std::nullopt, 0.6)}, dark).person, kStranger);
 }
 
+// Dressed alike: the next image, in which no face is looked for, does not name whom nobody knows any more.
+TEST(PersonTracker, ForgetsWhoseFaceWasSeenLast) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  learn(tracker, 2, kRed);
+  const Picture red = standing(kRed);
+  ASSERT_EQ(turned_away(tracker, red, 1), 1);
+  while (!tracker.face_is_due()) tracker.update({red.view(), std::nullopt, 1});
+  ASSERT_EQ(tracker.update({red.view(), face_of(2), 1}).person, 2);
+  ASSERT_FALSE(tracker.face_is_due());
+  tracker.forget(2);
+  EXPECT_EQ(tracker.update({red.view(), std::nullopt, 1}).person, 1);
+}
+
 TEST(PersonTracker, ForgetsAPersonAndSurvivesAnEmptyImage) {
   PersonTracker tracker;
   learn(tracker, 1, kRed);

@@ -77,6 +77,7 @@ PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)
 void PersonTracker::forget(Label person) {
   shirts_.forget(person);
   face_colors_.forget(person);
+  if (by_face_ && by_face_->person == person) by_face_.reset();
   std::erase_if(sizes_, [person](const Size& one) { return one.person == person; });
 }
 
