@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -57,6 +58,40 @@ bool is_thin(const Triangle& t, std::span<const Eigen::Vector3f> points, double 
   const Eigen::Vector3d ac = points[t[2]].cast<double>() - a;
   const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
   return !(ab.cross(ac).norm() > weld_m * longest);
+}
+
+Eigen::Vector3d area_of(const Triangle& t, std::span<const Eigen::Vector3f> points) {
+  const Eigen::Vector3d a = points[t[0]].cast<double>();
+  return (points[t[1]].cast<double>() - a).cross(points[t[2]].cast<double>() - a);
+}
+
+// One face of a file whose corners were measured by hand lies in no plane. A ruled surface bent by more is another thing: what its diagonal
+// looks like is not known, and it stays a crease.
+bool is_warped(std::span<const Triangle> cut, std::span<const Eigen::Vector3f> points) {
+  const double least_cos = std::cos(10.0 * std::numbers::pi / 180.0);
+  if (cut.size() < 2) return false;
+  Eigen::Vector3d whole = Eigen::Vector3d::Zero();
+  for (const Triangle& triangle : cut) whole += area_of(triangle, points);
+  const Eigen::Vector3d n = whole.normalized();
+  return std::ranges::all_of(cut, [&](const Triangle& triangle) {
+    const Eigen::Vector3d area = area_of(triangle, points);
+    return area.dot(n) >= least_cos * area.norm();
+  });
+}
+
+// The sides of its triangles that are none of the face's own.
+void add_diagonals(std::span<const std::uint32_t> outline, std::span<const Triangle> cut,
+                   std::vector<std::array<std::uint32_t, 2>>& diagonals) {
+  const auto side = [](std::uint32_t a, std::uint32_t b) { return std::array{std::min(a, b), std::max(a, b)}; };
+  std::vector<std::array<std::uint32_t, 2>> own;
+  for (std::size_t i = 0; i < outline.size(); ++i) own.push_back(side(outline[i], outline[(i + 1) % outline.size()]));
+  std::ranges::sort(own);
+  for (const Triangle& triangle : cut) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto inner = side(triangle[i], triangle[(i + 1) % 3]);
+      if (!std::ranges::binary_search(own, inner)) diagonals.push_back(inner);
+    }
+  }
 }
 
 // The same triangles, surfaces and edges, each in the order in which the index's trees have them; vertices as they are first used.
@@ -153,6 +188,7 @@ Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m) {
   std::vector<std::uint32_t> materials;
   triangles.reserve(soup.corners.size());
   materials.reserve(soup.corners.size());
+  std::vector<std::array<std::uint32_t, 2>> diagonals;
   std::vector<std::uint32_t> outline;
   std::vector<Triangle> cut;
   for (const Soup::Face& face : soup.faces) {
@@ -164,6 +200,7 @@ Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m) {
     while (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
     cut.clear();
     triangulate(outline, map.vertices, cut);
+    if (is_warped(cut, map.vertices)) add_diagonals(outline, cut, diagonals);
     for (const Triangle& triangle : cut) {
       if (is_thin(triangle, map.vertices, weld_m)) continue;
       triangles.push_back(triangle);
@@ -175,7 +212,8 @@ Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m) {
   std::vector<std::array<std::uint32_t, 2>> lines;
   lines.reserve(soup.lines.size());
   for (const auto& line : soup.lines) lines.push_back({became[line[0]], became[line[1]]});
-  if (!trace_outlines(lines, weld_m, map))
+  std::sort(diagonals.begin(), diagonals.end());
+  if (!trace_outlines(lines, diagonals, weld_m, map))
     return fail("its faces lie through each other nearly everywhere: this is no map of a place");
   look_beside(lies_on_m, map);
   Orderer(map).run();

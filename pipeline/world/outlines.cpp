@@ -36,8 +36,10 @@ class Tracer {
  public:
   Tracer(double weld_m, Map& map) : weld_m_(weld_m), map_(map) {}
 
-  bool run(const std::vector<std::array<std::uint32_t, 2>>& lines) {
+  bool run(const std::vector<std::array<std::uint32_t, 2>>& lines,
+           const std::vector<std::array<std::uint32_t, 2>>& diagonals) {
     collect();
+    if (!diagonals.empty()) leave_out(diagonals);
     if (!cut()) return false;
     pair();
     straighten();
@@ -66,6 +68,23 @@ class Tracer {
       if (end == i + 1) pieces_.push_back(all[i]);
       i = end;
     }
+  }
+
+  // The two halves of a warped face meet there, and nothing else does.
+  void leave_out(const std::vector<std::array<std::uint32_t, 2>>& diagonals) {
+    std::vector<Piece> left;
+    left.reserve(pieces_.size());
+    for (std::size_t i = 0; i < pieces_.size();) {
+      std::size_t end = i + 1;
+      while (end < pieces_.size() && pieces_[end].same_line(pieces_[i])) ++end;
+      const std::array<std::uint32_t, 2> line{pieces_[i].low(), pieces_[i].high()};
+      if (end != i + 2 || !std::binary_search(diagonals.begin(), diagonals.end(), line)) {
+        left.insert(left.end(), pieces_.begin() + static_cast<std::ptrdiff_t>(i),
+                    pieces_.begin() + static_cast<std::ptrdiff_t>(end));
+      }
+      i = end;
+    }
+    pieces_.swap(left);
   }
 
   // Where the end of one piece touches the inside of another, that one is cut. \return false: it would take too long.
@@ -361,8 +380,9 @@ class Tracer {
 
 }  // namespace
 
-bool trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines, double weld_m, Map& map) {
-  return Tracer(weld_m, map).run(lines);
+bool trace_outlines(const std::vector<std::array<std::uint32_t, 2>>& lines,
+                    const std::vector<std::array<std::uint32_t, 2>>& diagonals, double weld_m, Map& map) {
+  return Tracer(weld_m, map).run(lines, diagonals);
 }
 
 }  // namespace cgsr::world

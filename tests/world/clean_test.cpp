@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -252,6 +253,33 @@ TEST(Clean, ARoofKeepsItsCrease) {
   EXPECT_EQ(map.surfaces.size(), 2U);
   EXPECT_EQ(map.edges.size(), 7U);
   EXPECT_EQ(edge_between(map, {0, 1, 0.1F}, {1, 1, 0.1F}).kind, EdgeKind::kCrease);
+}
+
+// A face whose corners were measured by hand lies in no plane; the line along which it was cut into triangles is none of the place.
+TEST(Clean, TheDiagonalOfAWarpedFaceIsNoEdge) {
+  Maker maker;
+  maker.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.03F}, {0, 1, 0}});
+  const Map map = maker.map();
+  EXPECT_EQ(map.edges.size(), 4U);
+  EXPECT_EQ(count(map, EdgeKind::kBorder), 4);
+}
+
+TEST(Clean, TheDiagonalOfAWarpedFaceIsOneWhereSomethingElseMeetsIt) {
+  for (const auto& [one, other] : {std::pair{0, 2}, std::pair{1, 3}}) {
+    Maker maker;
+    const std::vector<Point> corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.03F}, {0, 1, 0}};
+    maker.face(corners);
+    const Point a = corners[static_cast<std::size_t>(one)], b = corners[static_cast<std::size_t>(other)];
+    maker.face({a, b, Point(b + Point(0, 0, 1)), Point(a + Point(0, 0, 1))});
+    const Map map = maker.map();
+    EXPECT_EQ(map.edges.size(), 8U) << one;
+  }
+}
+
+TEST(Clean, ABentFaceKeepsItsCrease) {
+  Maker maker;
+  maker.face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5F}, {0, 1, 0}});
+  EXPECT_EQ(maker.map().edges.size(), 5U);
 }
 
 TEST(Clean, ARoundPostKeepsItsFacets) {
