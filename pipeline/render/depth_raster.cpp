@@ -78,6 +78,7 @@ bool DepthRaster::covers(const Eigen::Vector2f& pixel) const {
 
 void DepthRaster::look_at_edge(std::uint32_t name) {
   const world::Edge& edge = map_.edges[name];
+  if (!is_seen_from(map_, edge, surfaces_.p_WC())) return;
   Line line;
   const auto near = static_cast<float>(parameters_.near_m);
   if (!line.set(surfaces_.corner(edge.vertices[0]), surfaces_.corner(edge.vertices[1]), *view_, near, min_w_)) return;

@@ -124,7 +124,7 @@ void OsmesaExpectation::draw(const geometry::Pose& X_WC) {
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   glVertexPointer(3, GL_FLOAT, 0, nullptr);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * map_.triangles.size()), GL_UNSIGNED_INT, nullptr);
+  draw_surfaces(X_WC.translation().cast<float>());
 
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDisable(GL_POLYGON_OFFSET_FILL);
@@ -138,6 +138,26 @@ void OsmesaExpectation::draw(const geometry::Pose& X_WC) {
   glDepthMask(GL_TRUE);
   glFinish();
   depths_ = context_->depths();
+}
+
+/// Runs of triangles whose surfaces are seen: all at once where none is one-sided.
+void OsmesaExpectation::draw_surfaces(const Eigen::Vector3f& p_WC) const {
+  std::size_t first = 0;
+  std::size_t end = 0;
+  const auto draw_run = [&] {
+    if (first == end) return;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * (end - first)), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(first * sizeof(world::Triangle)));  // an offset, as OpenGL has it
+  };
+  for (const world::Surface& surface : map_.surfaces) {
+    if (!is_seen_from(surface, p_WC)) {
+      draw_run();
+      first = end = surface.first_triangle + surface.triangle_count;
+    } else {
+      end = surface.first_triangle + surface.triangle_count;
+    }
+  }
+  draw_run();
 }
 
 void OsmesaExpectation::look(const geometry::Pose& X_WC, const geometry::Camera& camera,
@@ -158,7 +178,8 @@ void OsmesaExpectation::look(const geometry::Pose& X_WC, const geometry::Camera&
     ViewedCorner b;
     a.set(to_cells * (map_.vertices[map_.edges[edge].vertices[0]] - p_WC), near);
     b.set(to_cells * (map_.vertices[map_.edges[edge].vertices[1]] - p_WC), near);
-    if (!line_[edge].set(a, b, *view_, near)) line_[edge].along.setZero();
+    const bool may_be_seen = is_seen_from(map_, map_.edges[edge], p_WC);
+    if (!line_[edge].set(a, b, *view_, near) || !may_be_seen) line_[edge].along.setZero();
   }
   found_.clear();
   for (std::uint32_t edge = 0; edge < map_.edges.size(); ++edge) find_pieces(edge, found_);

@@ -37,6 +37,7 @@ class OsmesaExpectation : public Expectation {
 
   void upload();
   void draw(const geometry::Pose& X_WC);
+  void draw_surfaces(const Eigen::Vector3f& p_WC) const;
   void find_pieces(std::uint32_t edge, std::vector<VisiblePiece>& pieces) const;
   [[nodiscard]] bool shown(std::uint32_t edge, float s) const;
 

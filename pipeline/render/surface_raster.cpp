@@ -118,7 +118,7 @@ void SurfaceRaster::draw(const geometry::Pose& X_WC, const View& view, DepthBuff
     const Part& part = parts_[chosen];
     const std::uint32_t name = part.surface;
     const world::Surface& surface = map_.surfaces[name];
-    if (!plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
+    if (!is_seen_from(surface, p_WC_) || !plane_in_view(surface.normal, surface.offset_m, planes_[name])) continue;
     const DepthPlane& plane = planes_[name];
     front_[name] = surface.normal.dot(p_WC_) > surface.offset_m ? 1 : 0;
     for (const std::uint32_t index : std::span(order_).subspan(part.first, part.count)) {

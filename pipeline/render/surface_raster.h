@@ -30,6 +30,8 @@ class SurfaceRaster {
   void draw(const geometry::Pose& X_WC, const View& view, DepthBuffer& buffer);
 
   [[nodiscard]] const View& view() const { return *view_; }
+  /// Where the camera is, in W.
+  [[nodiscard]] const Eigen::Vector3f& p_WC() const { return p_WC_; }
   [[nodiscard]] const Frustum& frustum() const { return frustum_; }
   /// How far from the camera everything that hides something was drawn (SphereGroups::reach_m).
   [[nodiscard]] float reach_m() const { return in_view_.reach_m(); }

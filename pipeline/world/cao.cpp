@@ -372,6 +372,7 @@ class Reader {
 
 Result<Soup> read_cao(const std::filesystem::path& path, const CaoLimits& limits) {
   Soup soup;
+  soup.one_sided = true;  // as ViSP has it: whether a face is seen is told by its normal
   soup.materials.push_back({"model", Eigen::Vector3f::Constant(0.5F), false});
   if (auto good = Reader(soup, limits, MapFolder(path)).read(path, geometry::Pose::Identity()); !good)
     return tl::unexpected(good.error());

@@ -208,7 +208,8 @@ Result<Map> clean(const Soup& soup, double weld_m, double lies_on_m) {
     }
   }
   if (triangles.empty()) return fail("there is no surface with an area in it");
-  if (auto joined = join(triangles, materials, weld_m, map); !joined) return tl::unexpected(joined.error());
+  if (auto joined = join(triangles, materials, weld_m, soup.one_sided, map); !joined)
+    return tl::unexpected(joined.error());
   std::vector<std::array<std::uint32_t, 2>> lines;
   lines.reserve(soup.lines.size());
   for (const auto& line : soup.lines) lines.push_back({became[line[0]], became[line[1]]});

@@ -24,7 +24,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the compact copy is little-endian");
 
 constexpr std::string_view kMagic = "CGSRMAP";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kMostSurfaces = kLargestFaces;
 constexpr std::uint32_t kMostEdges = 2 * kLargestCorners;
 constexpr std::uint32_t kMostMaterials = 1'000'000;
@@ -166,6 +166,7 @@ std::string body_of(const Map& map) {
     body.put(surface.material);
     body.put(surface.normal);
     body.put(surface.offset_m);
+    body.put(static_cast<std::uint8_t>(surface.one_sided ? 1 : 0));
   }
   for (const Edge& edge : map.edges) {
     body.put(edge.vertices);
@@ -196,6 +197,9 @@ Result<Map> map_in(const Head& head, std::string_view text) {
     body.take(surface.material);
     body.take(surface.normal);
     body.take(surface.offset_m);
+    std::uint8_t one_sided = 0;
+    body.take(one_sided);
+    surface.one_sided = one_sided != 0;
   }
   map.edges.resize(head.edges);
   for (Edge& edge : map.edges) {
@@ -255,7 +259,7 @@ Result<Map> read_compact(const std::filesystem::path& path) {
                     head.vertices, head.triangles, head.surfaces, head.edges, head.materials));
   }
   const std::string_view body = std::string_view(*text).substr(sizeof(Head));
-  const std::uint64_t least = 12ULL * head.vertices + 12ULL * head.triangles + 28ULL * head.surfaces +
+  const std::uint64_t least = 12ULL * head.vertices + 12ULL * head.triangles + 29ULL * head.surfaces +
                               29ULL * head.edges + 17ULL * head.materials;
   if (body.size() < least)
     return wrong(fmt::format("it is cut short: {} bytes, expected at least {}", body.size(), least));

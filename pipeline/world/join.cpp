@@ -29,8 +29,9 @@ struct Side {
 
 class Joiner {
  public:
-  Joiner(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m, Map& map)
-      : triangles_(triangles), materials_(materials), weld_m_(weld_m), map_(map) {}
+  Joiner(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m,
+         bool one_sided, Map& map)
+      : triangles_(triangles), materials_(materials), weld_m_(weld_m), one_sided_(one_sided), map_(map) {}
 
   Result<void> run() {
     measure();
@@ -72,8 +73,15 @@ class Joiner {
               [&](std::uint32_t a, std::uint32_t b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
     group_.assign(triangles_.size(), kFree);
     gone_.assign(triangles_.size(), false);
+    given_both_ways_.assign(triangles_.size(), false);
+    std::size_t kept = 0;
     for (std::size_t i = 1; i < by_corners.size(); ++i) {
-      if (sorted[by_corners[i]] == sorted[by_corners[i - 1]]) gone_[by_corners[i]] = true;
+      if (sorted[by_corners[i]] != sorted[by_corners[kept]]) {
+        kept = i;
+        continue;
+      }
+      gone_[by_corners[i]] = true;
+      if (normals_[by_corners[i]].dot(normals_[by_corners[kept]]) < 0.0) given_both_ways_[by_corners[kept]] = true;
     }
     sides_.reserve(3 * triangles_.size());
     for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
@@ -225,10 +233,15 @@ class Joiner {
     }
     std::sort(outlines.begin(), outlines.end());
     dropped_.assign(seeds_.size(), false);
+    std::size_t kept = 0;
     for (std::size_t i = 1; i < outlines.size(); ++i) {
-      const bool doubled = outlines[i].edges > 0 && outlines[i].same(outlines[i - 1]) &&
-                           in_plane(seeds_[outlines[i].group], seeds_[outlines[i - 1].group]);
+      const std::uint32_t own = seeds_[outlines[i].group];
+      const bool doubled =
+          outlines[i].edges > 0 && outlines[i].same(outlines[i - 1]) && in_plane(own, seeds_[outlines[i - 1].group]);
       dropped_[outlines[i].group] = doubled;
+      if (!doubled) kept = i;
+      const std::uint32_t first = seeds_[outlines[kept].group];
+      if (normals_[own].dot(normals_[first]) < 0.0) given_both_ways_[first] = true;
     }
   }
 
@@ -244,23 +257,29 @@ class Joiner {
       surface.material = materials_[seeds_[g]];
       surface.normal = n.cast<float>();
       surface.offset_m = static_cast<float>(n.dot(point(triangles_[seeds_[g]][0])));
-      map_.surfaces.push_back(surface);
+      bool both_ways = false;
       for (const std::uint32_t t : members_[g]) {
         Triangle triangle = triangles_[t];
-        if (normals_[t].dot(n) < 0.0) std::swap(triangle[1], triangle[2]);
+        const bool turned = normals_[t].dot(n) < 0.0;
+        if (turned) std::swap(triangle[1], triangle[2]);
+        both_ways = both_ways || turned || given_both_ways_[t];
         map_.triangles.push_back(triangle);
       }
+      surface.one_sided = one_sided_ && !both_ways;
+      map_.surfaces.push_back(surface);
     }
   }
 
   const std::vector<Triangle>& triangles_;
   const std::vector<std::uint32_t>& materials_;
   double weld_m_;
+  bool one_sided_;
   Map& map_;
   std::vector<Eigen::Vector3d> normals_;
   std::vector<double> areas_;
   std::vector<double> heights_;
   std::vector<bool> gone_;
+  std::vector<bool> given_both_ways_;  ///< of a triangle: another one that is gone lay there the other way round.
   std::vector<Side> sides_;
   std::vector<std::array<std::uint32_t, 3>> where_;  ///< of each triangle's sides in sides_.
   std::vector<std::uint32_t> group_;
@@ -272,8 +291,8 @@ class Joiner {
 }  // namespace
 
 Result<void> join(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& materials, double weld_m,
-                  Map& map) {
-  return Joiner(triangles, materials, weld_m, map).run();
+                  bool one_sided, Map& map) {
+  return Joiner(triangles, materials, weld_m, one_sided, map).run();
 }
 
 }  // namespace cgsr::world

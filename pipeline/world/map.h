@@ -21,7 +21,7 @@ struct Material {
   bool known_color = true;                                  ///< false: the file did not say; nothing is expected of it.
 };
 
-/// A part of a plane of one material: what is left after coplanar neighbours were joined. Seen from both sides.
+/// A part of a plane of one material: what is left after coplanar neighbours were joined. Seen from both sides where the file does not say otherwise.
 struct Surface {
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
@@ -29,6 +29,7 @@ struct Surface {
   Eigen::Vector3f normal =
       Eigen::Vector3f::UnitZ();  ///< unit; n . p = offset_m on the surface. Outlines run counter-clockwise about it.
   float offset_m = 0.0F;
+  bool one_sided = false;  ///< neither seen nor hiding anything from behind, as the faces of ViSP's .cao.
 };
 
 /// Indices into Map::vertices, counter-clockwise about the surface's normal.
@@ -71,6 +72,11 @@ struct Edge {
   float contrast = 0.0F;
 };
 
+/// \return whether a surface is seen from a place in W.
+inline bool is_seen_from(const Surface& surface, const Eigen::Vector3f& place) {
+  return !surface.one_sided || surface.normal.dot(place) > surface.offset_m;
+}
+
 /// The static geometry that the robot knows, in W, metres, z up. Plain arrays: made once by the loader, never changed after. The world model of section 4.2.
 struct Map {
   std::vector<Eigen::Vector3f> vertices;
@@ -79,6 +85,17 @@ struct Map {
   std::vector<Edge> edges;
   std::vector<Material> materials;
 };
+
+/// \return whether an edge may be seen from a place in W: one of its surfaces is, or it has none.
+inline bool is_seen_from(const Map& map, const Edge& edge, const Eigen::Vector3f& place) {
+  bool has_surface = false;
+  for (const std::uint32_t surface : edge.surfaces) {
+    if (surface == kNone) continue;
+    if (is_seen_from(map.surfaces[surface], place)) return true;
+    has_surface = true;
+  }
+  return !has_surface;
+}
 
 /// \return the luma of a colour as it is encoded (BT.601), 0..1.
 inline float luma_of(const Eigen::Vector3f& color) {

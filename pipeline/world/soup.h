@@ -29,6 +29,7 @@ struct Soup {
   std::vector<Face> faces;
   std::vector<std::array<std::uint32_t, 2>> lines;  ///< edges that the file draws itself.
   std::vector<Material> materials;
+  bool one_sided = false;  ///< its faces are seen from the front alone.
 };
 
 }  // namespace cgsr::world

@@ -81,6 +81,15 @@ inline void add_box(world::Map& map, const Eigen::Vector3f& least, const Eigen::
   }
 }
 
+/// Faces that are seen from the front alone, as a .cao has them: a box whose fronts are inside shows the other corner, through what is before it.
+inline void turn_inside_out(world::Map& map) {
+  for (world::Surface& surface : map.surfaces) {
+    surface.normal = -surface.normal;
+    surface.offset_m = -surface.offset_m;
+    surface.one_sided = true;
+  }
+}
+
 /// A camera at p_WC whose axis points at p_WT, level.
 inline geometry::Pose looking_from(const Eigen::Vector3d& p_WC, const Eigen::Vector3d& p_WT) {
   const Eigen::Vector3d z = (p_WT - p_WC).normalized();

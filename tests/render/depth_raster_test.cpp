@@ -83,6 +83,20 @@ TEST(DepthRaster, ACubeShowsNineOfItsTwelveEdges) {
   }
 }
 
+TEST(DepthRaster, AFaceThatIsSeenFromItsFrontAloneHidesNothingFromBehind) {
+  Map map;
+  add_box(map, {-0.5F, -0.5F, 0.0F}, {0.5F, 0.5F, 1.0F});
+  turn_inside_out(map);
+  const auto pieces = seen(map, looking_from({3.0, 2.0, 2.0}, {0.0, 0.0, 0.5}));
+  ASSERT_EQ(pieces.size(), 9U);
+  for (const VisiblePiece& piece : pieces) {
+    EXPECT_EQ(piece.from, 0.0F);
+    EXPECT_EQ(piece.to, 1.0F);
+    for (const std::uint32_t v : map.edges[piece.edge].vertices)
+      EXPECT_FALSE(map.vertices[v].isApprox(Vector3f(0.5F, 0.5F, 1.0F))) << "the corner in front";
+  }
+}
+
 TEST(DepthRaster, SaysWhereTheMapIs) {
   Map map;
   add_box(map, {-0.5F, -0.5F, 0.0F}, {0.5F, 0.5F, 1.0F});

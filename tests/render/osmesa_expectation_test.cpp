@@ -159,6 +159,26 @@ TEST(Osmesa, ACubeShowsNineOfItsTwelveEdges) {
   EXPECT_EQ(pieces.size(), 9U);
 }
 
+TEST(Osmesa, AFaceThatIsSeenFromItsFrontAloneHidesNothingFromBehind) {
+  Map map;
+  add_box(map, {-0.5F, -0.5F, 0.0F}, {0.5F, 0.5F, 1.0F});
+  turn_inside_out(map);
+  map.surfaces.back().one_sided = false;
+  auto expectation = OsmesaExpectation::make(map, {});
+  ASSERT_TRUE(expectation) << expectation.error().message;
+  DepthRaster raster(map, {});
+  const Pose X_WC = looking_from({3.0, 2.0, 2.0}, {0.0, 0.0, 0.5});
+  std::vector<VisiblePiece> drawn, rastered;
+  (*expectation)->look(X_WC, Camera(), drawn);
+  raster.look(X_WC, Camera(), rastered);
+  ASSERT_EQ(drawn.size(), rastered.size());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    EXPECT_EQ(drawn[i].edge, rastered[i].edge);
+    EXPECT_NEAR(drawn[i].from, rastered[i].from, 0.03F);
+    EXPECT_NEAR(drawn[i].to, rastered[i].to, 0.03F);
+  }
+}
+
 TEST(OsmesaFault, AMapOfNothingShowsNothingAndTwoLiveSideBySide) {
   const Map nothing;
   Map one;

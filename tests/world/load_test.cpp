@@ -1,5 +1,6 @@
 #include "pipeline/world/load.h"
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -92,6 +93,36 @@ TEST(LoadMap, CaoWithItsLinesAndFaces) {
   EXPECT_EQ(edge_between(*map, {0, 0, 0}, {1, 0, 0}).kind, EdgeKind::kCrease);
 }
 
+TEST(LoadMap, FacesOfACaoAreSeenFromTheirFrontAlone) {
+  const ScratchFolder scratch;
+  write(scratch / "small.cao", kCao);
+  write(scratch / "sheet.cao",
+        "V1\n5\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n0\n0\n3\n4 0 1 2 3\n4 3 2 1 0\n3 0 1 4\n0\n0\n");
+  write(scratch / "sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+  const auto small = load_map(scratch / "small.cao");
+  const auto both_ways = load_map(scratch / "sheet.cao");
+  const auto obj = load_map(scratch / "sheet.obj");
+  ASSERT_TRUE(small && both_ways && obj);
+  for (const Surface& surface : small->surfaces) EXPECT_TRUE(surface.one_sided);
+  for (const Surface& surface : obj->surfaces) EXPECT_FALSE(surface.one_sided);
+  ASSERT_EQ(both_ways->surfaces.size(), 2U);
+  for (const Surface& surface : both_ways->surfaces)
+    EXPECT_EQ(surface.one_sided, std::abs(surface.normal.z()) < 0.5F) << "given front and back";
+}
+
+TEST(LoadMap, AnEdgeIsSeenWhereOneOfItsSurfacesIs) {
+  Maker maker;
+  maker.box({0, 0, 0}, {1, 1, 1});
+  Map map = maker.map();
+  const Edge edge = edge_between(map, {0, 0, 1}, {1, 0, 1});
+  EXPECT_TRUE(is_seen_from(map, edge, {0.5F, 2.0F, 0.5F}));
+  for (Surface& surface : map.surfaces) surface.one_sided = true;
+  EXPECT_FALSE(is_seen_from(map, edge, {0.5F, 2.0F, 0.5F}));
+  EXPECT_TRUE(is_seen_from(map, edge, {0.5F, 2.0F, 1.5F})) << "the top";
+  EXPECT_TRUE(is_seen_from(map, edge, {0.5F, -2.0F, 0.5F})) << "the front";
+  EXPECT_TRUE(is_seen_from(map, Edge(), {0.5F, 2.0F, 0.5F})) << "no surface";
+}
+
 TEST(LoadMap, CaoLoadsOthersWhereItPlacesThem) {
   const ScratchFolder scratch;
   write(scratch / "small.cao", kCao);
@@ -180,7 +211,8 @@ TEST(LoadMapFault, WhatIsNoMapIsRefusedWithItsName) {
 
 TEST(CompactMap, ComesBackAsItWas) {
   const ScratchFolder scratch;
-  const Map map = small_map();
+  Map map = small_map();
+  map.surfaces[1].one_sided = true;
   ASSERT_TRUE(write_compact(map, scratch / "a.cgsrmap"));
   const auto back = load_map(scratch / "a.cgsrmap");
   ASSERT_TRUE(back) << back.error().message;
@@ -194,6 +226,7 @@ TEST(CompactMap, ComesBackAsItWas) {
     EXPECT_EQ(back->surfaces[i].material, map.surfaces[i].material);
     EXPECT_EQ(back->surfaces[i].normal, map.surfaces[i].normal);
     EXPECT_EQ(back->surfaces[i].offset_m, map.surfaces[i].offset_m);
+    EXPECT_EQ(back->surfaces[i].one_sided, map.surfaces[i].one_sided);
   }
   for (std::size_t i = 0; i < map.edges.size(); ++i) {
     EXPECT_EQ(back->edges[i].vertices, map.edges[i].vertices);
@@ -289,7 +322,7 @@ TEST(CompactMapFault, DamageIsNoticed) {
   EXPECT_THAT(refusal("b.cgsrmap", good + "x"), HasSubstr("checksum"));
   bad = good;
   bad[8] = 7;
-  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("version 7: expected 1"));
+  EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("version 7: expected 2"));
   bad = good;
   bad[0] = 'X';
   EXPECT_THAT(refusal("b.cgsrmap", bad), HasSubstr("not a compact map"));
