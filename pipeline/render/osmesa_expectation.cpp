@@ -56,7 +56,7 @@ OsmesaExpectation::OsmesaExpectation(const world::Map& map, const OsmesaParamete
 
 OsmesaExpectation::~OsmesaExpectation() {
   if (!context_->make_current()) return;
-  for (const std::uint32_t* buffer : {&vertices_, &triangles_, &lines_, &colors_}) glDeleteBuffers(1, buffer);
+  for (const std::uint32_t* buffer : {&vertices_, &lines_, &colors_}) glDeleteBuffers(1, buffer);
 }
 
 void OsmesaExpectation::upload() {
@@ -66,7 +66,6 @@ void OsmesaExpectation::upload() {
     glBufferData(kind, static_cast<GLsizeiptr>(bytes), data, GL_STATIC_DRAW);
   };
   give(GL_ARRAY_BUFFER, vertices_, map_.vertices.data(), map_.vertices.size() * sizeof(Eigen::Vector3f));
-  give(GL_ELEMENT_ARRAY_BUFFER, triangles_, map_.triangles.data(), map_.triangles.size() * sizeof(world::Triangle));
   std::vector<Eigen::Vector3f> ends;
   std::vector<std::uint32_t> colors;
   ends.reserve(2 * map_.edges.size());
@@ -123,7 +122,6 @@ void OsmesaExpectation::draw(const geometry::Pose& X_WC) {
   glDisableClientState(GL_COLOR_ARRAY);
   glBindBuffer(GL_ARRAY_BUFFER, vertices_);
   glVertexPointer(3, GL_FLOAT, 0, nullptr);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_);
   draw_surfaces(X_WC.translation().cast<float>());
 
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -147,7 +145,7 @@ void OsmesaExpectation::draw_surfaces(const Eigen::Vector3f& p_WC) const {
   const auto draw_run = [&] {
     if (first == end) return;
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * (end - first)), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(first * sizeof(world::Triangle)));  // an offset, as OpenGL has it
+                   map_.triangles.data() + first);
   };
   for (const world::Surface& surface : map_.surfaces) {
     if (!is_seen_from(surface, p_WC)) {

@@ -49,7 +49,6 @@ class OsmesaExpectation : public Expectation {
   Eigen::Vector3f middle_ = Eigen::Vector3f::Zero();  ///< of the map.
   float radius_ = 0.0F;
   std::uint32_t vertices_ = 0;  ///< OpenGL's names of buffers.
-  std::uint32_t triangles_ = 0;
   std::uint32_t lines_ = 0;
   std::uint32_t colors_ = 0;
   std::vector<EdgeLine> line_;  ///< [edge], of this look; those out of view have no length.

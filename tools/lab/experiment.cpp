@@ -208,7 +208,7 @@ constexpr std::array kExperiments{
                real_localization,
                localization_hash,
                kLocalizationRooms,
-               {"tools/lab/tables/real_localization.cpp"}},
+               {"tools/lab/tables/real_localization.cpp", "tools/lab/tables/real_sequences.cpp"}},
     Experiment{"table-5.1",
                "Where the lamp is, out of the probes' shadows (Table 5.1)",
                5,

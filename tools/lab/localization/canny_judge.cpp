@@ -23,6 +23,35 @@ Vector3d centre_of(const world::Map& map) {
   return (low + high) / 2.0;
 }
 
+namespace {
+
+/// Whether a triangle of the map stands before a place on an edge. \param edge  whose own surfaces do not count.
+bool is_hidden(const world::Map& map, const world::Edge& edge, const Vector3d& p_WC, const Vector3d& p) {
+  constexpr double kBefore = 0.995;  // of the way to the place
+  const Vector3d ray = p - p_WC;
+  for (std::uint32_t s = 0; s < map.surfaces.size(); ++s) {
+    const world::Surface& surface = map.surfaces[s];
+    if (s == edge.surfaces[0] || s == edge.surfaces[1] || !is_seen_from(surface, p_WC.cast<float>())) continue;
+    for (std::uint32_t t = surface.first_triangle; t < surface.first_triangle + surface.triangle_count; ++t) {
+      const Vector3d a = map.vertices[map.triangles[t][0]].cast<double>();
+      const Vector3d e1 = map.vertices[map.triangles[t][1]].cast<double>() - a;
+      const Vector3d e2 = map.vertices[map.triangles[t][2]].cast<double>() - a;
+      const Vector3d across = ray.cross(e2);
+      const double det = e1.dot(across);
+      if (det == 0.0) continue;
+      const Vector3d from_a = p_WC - a;
+      const double u = from_a.dot(across) / det;
+      const Vector3d q = from_a.cross(e1);
+      const double v = ray.dot(q) / det;
+      const double at = e2.dot(q) / det;
+      if (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && at > 0.0 && at < kBefore) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
 std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& map, const geometry::Camera& camera,
                                        const geometry::Pose& X_WC) {
   constexpr double kStep_px = 5.0;
@@ -36,20 +65,15 @@ std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& ma
   cv::Sobel(smooth, dx, CV_32F, 1, 0);
   cv::Sobel(smooth, dy, CV_32F, 0, 1);
   cv::Canny(smooth, edges, 20, 60);
-  const Vector3d centre = centre_of(map);
   const geometry::Pose X_CW = X_WC.inverse();
-  const auto faces = [&](std::uint32_t s) {
-    if (s == world::kNone) return false;
-    const world::Surface& surface = map.surfaces[s];
-    const Vector3d n = surface.normal.cast<double>();
-    const double outward = n.dot(centre) < static_cast<double>(surface.offset_m) ? 1.0 : -1.0;
-    return outward * (n.dot(X_WC.translation()) - static_cast<double>(surface.offset_m)) > 0.0;
-  };
+  const Vector3d p_WC = X_WC.translation();
   std::vector<double> found;
   for (const world::Edge& edge : map.edges) {
-    if (!faces(edge.surfaces[0]) && !faces(edge.surfaces[1])) continue;
-    const auto a = camera.pixel_of(X_CW * map.vertices[edge.vertices[0]].cast<double>());
-    const auto b = camera.pixel_of(X_CW * map.vertices[edge.vertices[1]].cast<double>());
+    if (!is_seen_from(map, edge, p_WC.cast<float>())) continue;
+    const Vector3d from = X_CW * map.vertices[edge.vertices[0]].cast<double>();
+    const Vector3d to = X_CW * map.vertices[edge.vertices[1]].cast<double>();
+    const auto a = camera.pixel_of(from);
+    const auto b = camera.pixel_of(to);
     if (!a || !b || (*b - *a).norm() < kStep_px) continue;
     const Vector2d along = (*b - *a).normalized();
     const Vector2d normal(-along.y(), along.x());
@@ -57,6 +81,10 @@ std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& ma
     for (int i = 0; i <= steps; ++i) {
       const Vector2d p = *a + along * (kStep_px * i);
       if (p.x() < 3 || p.y() < 3 || p.x() > grey.cols - 4 || p.y() > grey.rows - 4) continue;
+      const double share = kStep_px * i / (*b - *a).norm();
+      const double along_edge =
+          share * from.z() / (to.z() + share * (from.z() - to.z()));  // 1/Z is linear in the image
+      if (is_hidden(map, edge, p_WC, X_WC * (from + along_edge * (to - from)))) continue;
       double nearest = kFarthest_px;
       for (int y = static_cast<int>(p.y()) - kFarthest_px; y <= static_cast<int>(p.y()) + kFarthest_px; ++y) {
         for (int x = static_cast<int>(p.x()) - kFarthest_px; x <= static_cast<int>(p.x()) + kFarthest_px; ++x) {

@@ -13,8 +13,8 @@ namespace cgsr::lab {
 /// The middle of a map's bounding box.
 Eigen::Vector3d centre_of(const world::Map& map);
 
-/// How well a pose fits a picture, by a few lines that know nothing of any tracker: the distances of a convex body's visible edges, every
-/// 5 px, to the nearest Canny edge within 20 degrees of their direction. [px], at most 20.
+/// How well a pose fits a picture, by a few lines that know nothing of any tracker: the distances of a body's visible edges, every
+/// 5 px and by exact rays, to the nearest Canny edge within 20 degrees of their direction. [px], at most 20.
 std::vector<double> distances_to_canny(const cv::Mat& grey, const world::Map& map, const geometry::Camera& camera,
                                        const geometry::Pose& X_WC);
 

@@ -1,5 +1,5 @@
-// Chapter 4 on images of others, beside ViSP's edge tracker: a cube followed from one pose, and ViSP's rendered castle, whose poses are exact,
-// corrected from drawn priors.
+// Chapter 4 on images of others, beside ViSP's edge tracker: films that are followed from one pose (real_sequences), and ViSP's rendered castle,
+// whose poses are exact, corrected from drawn priors.
 
 #include <unistd.h>
 
@@ -7,28 +7,21 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "pipeline/geometry/quantile.h"
-#include "pipeline/render/depth_raster.h"
 #include "pipeline/world/load.h"
-#include "src/input/camera_file.h"
-#include "src/input/pose_file.h"
-#include "src/output/map_overlay.h"
-#include "src/output/video_writer.h"
 #include "tools/lab/child.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/localization/canny_judge.h"
+#include "tools/lab/localization/real_pictures.h"
 #include "tools/lab/localization/trial.h"
 #include "tools/lab/localization/visp_edges.h"
-#include "tools/lab/source_path.h"
+#include "tools/lab/tables/real_sequences.h"
 
 namespace cgsr::lab {
 namespace {
@@ -38,195 +31,6 @@ using Eigen::Vector3d;
 
 constexpr double kRad = std::numbers::pi / 180.0;
 const fs::path kCastle = "/usr/share/visp-images-data/ViSP-images/mbt-depth/Castle-simu";
-
-std::vector<double> numbers_of(const fs::path& path) {
-  std::ifstream file(path);
-  std::vector<double> numbers;
-  for (double number = 0.0; file >> number;) numbers.push_back(number);
-  return numbers;
-}
-
-Result<void> write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) return fail(fmt::format("{}: cannot be written", path.string()));
-  return {};
-}
-
-std::vector<fs::path> pictures_of(const fs::path& folder) {
-  std::vector<fs::path> paths;
-  std::error_code none;
-  for (const auto& entry : fs::directory_iterator(folder, none)) paths.push_back(entry.path());
-  std::ranges::sort(paths);
-  return paths;
-}
-
-/// ViSP's settings that are compared: every search range with one call and ten.
-struct VispChoice {
-  unsigned range_px;
-  int calls;
-
-  [[nodiscard]] std::string name() const {
-    return fmt::format("ViSP, range {} px, {} call{}", range_px, calls, calls == 1 ? "" : "s");
-  }
-};
-constexpr std::array kVispChoices{VispChoice{8, 1}, VispChoice{8, 10}, VispChoice{25, 1}, VispChoice{25, 10}};
-
-constexpr double kVideo_hz = 10.0;
-
-/// Films the poses that one contender found over the pictures. \return the film's path.
-Result<fs::path> film(const Setting& setting, const std::string& name, const world::Map& map,
-                      const geometry::Camera& camera, const std::vector<fs::path>& pictures,
-                      const std::vector<std::optional<geometry::Pose>>& found, const std::string& who) {
-  const fs::path folder = setting.videos.value_or(fs::temp_directory_path() / "cgsr-videos");
-  std::error_code ignored;
-  fs::create_directories(folder, ignored);
-  const fs::path path = folder / (name + ".mkv");
-  render::DepthRaster expectation(map, render::RasterParameters{});
-  app::MapOverlay overlay(map, expectation, camera);
-  auto video = app::VideoWriter::create(path.string(), overlay.picture_size(), kVideo_hz);
-  if (!video) return tl::unexpected(video.error());
-  std::optional<geometry::Pose> last;
-  for (std::size_t i = 0; i < std::min(pictures.size(), found.size()); ++i) {
-    const cv::Mat grey = cv::imread(pictures[i].string(), cv::IMREAD_GRAYSCALE);
-    if (found[i]) last = found[i];
-    if (!last) continue;
-    const ImageView view{grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8};
-    const std::string words = fmt::format("{}, image {}{}", who, i, found[i] ? "" : ": no pose");
-    if (auto added = video->add(overlay.draw(view, *last, found[i].has_value(), words)); !added) {
-      return tl::unexpected(added.error());
-    }
-  }
-  if (auto closed = video->close(); !closed) return tl::unexpected(closed.error());
-  return path;
-}
-
-// --- a film that is followed -----------------------------------------------------------------------------------------------------------
-
-struct Sequence {
-  std::string name;
-  fs::path map;
-  fs::path images;
-  geometry::Camera camera;
-  geometry::Pose X_WC;  ///< at the first image.
-};
-
-std::optional<Sequence> cube_of(const fs::path& data) {
-  const fs::path folder = data / "localization" / "cube";
-  const auto v = numbers_of(folder / "cube.0.pos");
-  if (v.size() != 6) return std::nullopt;
-  Sequence sequence{"cube", folder / "cube.cao", folder / "img", {}, {}};
-  sequence.camera = {640, 480, 547.7367575, 542.0744058, 338.7036994, 234.5083345};  // cube.xml
-  geometry::Pose X_CW = geometry::Pose::Identity();
-  X_CW.translation() = Vector3d(v[0], v[1], v[2]);
-  X_CW.linear() = geometry::rotation_of({v[3], v[4], v[5]});
-  sequence.X_WC = X_CW.inverse();
-  return sequence;
-}
-
-std::optional<Sequence> desk_of(const fs::path& data) {
-  const fs::path folder = data / "localization" / "desk";
-  std::ifstream file(folder / "sequence" / "init" / "cube.json");
-  const auto json = nlohmann::json::parse(file, nullptr, false);
-  if (json.is_discarded()) return std::nullopt;
-  Sequence sequence{"desk", folder / "models" / "cube" / "cube.obj", folder / "img", {}, {}};
-  sequence.camera = {640, 480, 607.178466796875, 607.2342529296875, 321.39129638671875, 241.91822814941406};
-  geometry::Pose X_CW = geometry::Pose::Identity();
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 4; ++c) X_CW.matrix()(r, c) = json[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
-  }
-  sequence.X_WC = geometry::normalized(X_CW.inverse());
-  return sequence;
-}
-
-Result<std::vector<std::optional<geometry::Pose>>> follow_ours(const Sequence& sequence, std::size_t count) {
-  const auto folder = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-real", getpid());
-  std::error_code ignored;
-  fs::create_directories(folder, ignored);
-  const auto camera = write_text(folder / "camera.yaml", app::camera_as_yaml(sequence.camera, sequence.name));
-  const auto pose =
-      write_text(folder / "pose.csv", fmt::format("{}\n{}\n", app::kPoseColumns, app::pose_as_csv(sequence.X_WC)));
-  if (!camera) return tl::unexpected(camera.error());
-  if (!pose) return tl::unexpected(pose.error());
-  const auto program = fs::read_symlink("/proc/self/exe").parent_path() / "cgsr";
-  const auto json = scratch_json();
-  const auto result =
-      run_for_json({program.string(), "localize", "--map", sequence.map.string(), "--camera",
-                    (folder / "camera.yaml").string(), "--input", sequence.images.string(), "--pose",
-                    (folder / "pose.csv").string(), "--config", source_path("config/localization/free.toml"), "--csv",
-                    (folder / "answer.csv").string(), "--json", json.string()},
-                   json);
-  const auto answers = app::read_poses(folder / "answer.csv");
-  fs::remove_all(folder, ignored);
-  if (!result) return tl::unexpected(result.error());
-  if (!answers) return tl::unexpected(answers.error());
-  std::vector<std::optional<geometry::Pose>> found(count);
-  for (const app::PoseRow& row : *answers) {
-    const auto at = static_cast<std::size_t>(*row.frame);
-    if (at < count) found[at] = row.X;
-  }
-  return found;
-}
-
-Result<std::vector<std::optional<geometry::Pose>>> follow_visp(const Sequence& sequence, const VispChoice& choice,
-                                                               const std::vector<fs::path>& pictures) {
-  // Sampling, angles and clipping are those of the cube's own configuration.
-  const VispSettings settings{choice.range_px, choice.calls, 4.0, 65.0, 75.0, 0.1, 0.9};
-  auto visp = VispEdges::create({{sequence.map}}, sequence.camera, settings);
-  if (!visp) return tl::unexpected(visp.error());
-  std::vector<std::optional<geometry::Pose>> found(pictures.size());
-  bool begun = false;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const cv::Mat grey = cv::imread(pictures[i].string(), cv::IMREAD_GRAYSCALE);
-    if (i == 0) begun = visp->begin(grey, sequence.X_WC);
-    if (!begun) break;
-    found[i] = visp->track(grey);
-  }
-  return found;
-}
-
-Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Report& report) {
-  const auto map = world::load_map(sequence.map);
-  if (!map) return tl::unexpected(map.error());
-  const auto pictures = pictures_of(sequence.images);
-  const auto judge = [&](const std::string& who, const std::vector<std::optional<geometry::Pose>>& found) {
-    CannyTally tally;
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      if (!found[i]) continue;
-      const cv::Mat grey = cv::imread(pictures[i].string(), cv::IMREAD_GRAYSCALE);
-      tally.add(distances_to_canny(grey, *map, sequence.camera, *found[i]));
-    }
-    const std::string row = sequence.name + ", " + who;
-    report.rows.push_back(share_row(row, "followed (Canny)", tally.followed, static_cast<int>(pictures.size())));
-    report.rows.push_back(mean_row(row, "median distance", "px", tally.medians, setting.seed));
-    report.rows.push_back(share_row(row, "within 3 px", tally.near, tally.places));
-    return std::pair(tally.followed, -geometry::quantile(tally.medians, 0.5));
-  };
-  const auto ours = follow_ours(sequence, pictures.size());
-  if (!ours) return tl::unexpected(ours.error());
-  judge("ours", *ours);
-  const auto seen = film(setting, sequence.name + "-ours", *map, sequence.camera, pictures, *ours, "ours");
-  if (!seen) return tl::unexpected(seen.error());
-  report.notes.push_back(fmt::format("Film: {}.", seen->string()));
-  if (!VispEdges::built() || sequence.map.extension() != ".cao") return {};  // ViSP's tracker reads no .obj
-  std::pair most(-1, 0.0);
-  std::vector<std::optional<geometry::Pose>> best;
-  std::string best_name;
-  for (const VispChoice& choice : kVispChoices) {
-    auto found = follow_visp(sequence, choice, pictures);
-    if (!found) return tl::unexpected(found.error());
-    const auto followed = judge(choice.name(), *found);
-    if (followed <= most) continue;
-    most = followed;
-    best = std::move(*found);
-    best_name = choice.name();
-  }
-  const auto theirs = film(setting, sequence.name + "-visp", *map, sequence.camera, pictures, best, best_name);
-  if (!theirs) return tl::unexpected(theirs.error());
-  report.notes.push_back(fmt::format("Film: {} ({}).", theirs->string(), best_name));
-  return {};
-}
 
 // --- ViSP's castle -----------------------------------------------------------------------------------------------------------------------
 
@@ -390,16 +194,16 @@ Result<void> add_castle(const Setting& setting, const config::Localization& free
     const auto trials = castle_trials(setting, pictures, centre, off);
     if (!trials) return tl::unexpected(trials.error());
     const CastleTally ours = castle_by_ours(*stage, *trials, centre, from, report);
-    const auto seen =
-        film(setting, fmt::format("castle-{:.0f}-ours", off), *map, camera, pictures, ours.found, "ours, " + from);
+    const auto seen = film_of_poses(setting, fmt::format("castle-{:.0f}-ours", off), *map, camera, pictures, ours.found,
+                                    "ours, " + from);
     if (!seen) return tl::unexpected(seen.error());
     report.notes.push_back(fmt::format("Film: {}.", seen->string()));
     if (!VispEdges::built()) continue;
     const auto visp = castle_by_visp(camera, *trials, centre, from, report);
     if (!visp) return tl::unexpected(visp.error());
     const auto& [best, name] = *visp;
-    const auto filmed = film(setting, fmt::format("castle-{:.0f}-visp", off), *map, camera, pictures, best.found,
-                             fmt::format("{}, {}", name, from));
+    const auto filmed = film_of_poses(setting, fmt::format("castle-{:.0f}-visp", off), *map, camera, pictures,
+                                      best.found, fmt::format("{}, {}", name, from));
     if (!filmed) return tl::unexpected(filmed.error());
     report.notes.push_back(fmt::format("Film: {} ({}).", filmed->string(), name));
   }
@@ -414,13 +218,9 @@ Result<Report> real_localization(const Setting& setting) {
   Report report;
   report.title = "images that others made";
   if (setting.data) {
-    for (const auto& sequence : {cube_of(*setting.data), desk_of(*setting.data)}) {
-      if (!sequence) continue;
-      setting.progress(sequence->name);
-      if (auto added = add_sequence(setting, *sequence, report); !added) return tl::unexpected(added.error());
-    }
+    if (auto added = add_real_sequences(setting, *setting.data, report); !added) return tl::unexpected(added.error());
   } else {
-    report.notes.emplace_back("cube and desk: left out, --data or CGSR_DATA names no folder.");
+    report.notes.emplace_back("cube, desk and castel: left out, --data or CGSR_DATA names no folder.");
   }
   if (fs::exists(kCastle)) {
     setting.progress("Castle-simu");

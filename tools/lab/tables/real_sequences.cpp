@@ -1,0 +1,219 @@
+#include "tools/lab/tables/real_sequences.h"
+
+#include <unistd.h>
+
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "pipeline/world/load.h"
+#include "src/input/camera_file.h"
+#include "src/input/pose_file.h"
+#include "tools/lab/child.h"
+#include "tools/lab/localization/canny_judge.h"
+#include "tools/lab/localization/real_pictures.h"
+#include "tools/lab/localization/visp_edges.h"
+#include "tools/lab/source_path.h"
+
+namespace cgsr::lab {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+struct Sequence {
+  std::string name;
+  fs::path map;
+  fs::path images;
+  geometry::Camera camera;
+  geometry::Pose X_WC;  ///< at the first image.
+  VispSettings visp;    ///< its configuration's sampling, angles and clipping.
+};
+
+/// ViSP's file of a start pose: translation and rotation vector of the model in the camera. \return the camera's in the model.
+std::optional<geometry::Pose> start_pose(const fs::path& path) {
+  const auto v = numbers_of(path);
+  if (v.size() != 6) return std::nullopt;
+  geometry::Pose X_CW = geometry::Pose::Identity();
+  X_CW.translation() = Vector3d(v[0], v[1], v[2]);
+  X_CW.linear() = geometry::rotation_of({v[3], v[4], v[5]});
+  return X_CW.inverse();
+}
+
+std::optional<Sequence> cube_of(const fs::path& data) {
+  const fs::path folder = data / "localization" / "cube";
+  const auto X_WC = start_pose(folder / "cube.0.pos");
+  if (!X_WC) return std::nullopt;
+  // Of cube.xml.
+  const geometry::Camera camera{640, 480, 547.7367575, 542.0744058, 338.7036994, 234.5083345};
+  return Sequence{"cube", folder / "cube.cao", folder / "img", camera, *X_WC, {8, 1, 4.0, 65.0, 75.0, 0.1, 0.9}};
+}
+
+std::optional<Sequence> castel_of(const fs::path& data) {
+  const fs::path folder = data / "localization" / "castel";
+  const auto X_WC = start_pose(folder / "chateau.0.pos");
+  if (!X_WC) return std::nullopt;
+  // Of chateau.xml.
+  const geometry::Camera camera{640, 480, 615.1674804688, 615.1675415039, 312.1889953613, 243.4373779297};
+  return Sequence{"castel", folder / "chateau.cao", folder / "img", camera, *X_WC, {8, 1, 5.0, 70.0, 80.0, 0.01, 2.0}};
+}
+
+std::optional<Sequence> desk_of(const fs::path& data) {
+  const fs::path folder = data / "localization" / "desk";
+  std::ifstream file(folder / "sequence" / "init" / "cube.json");
+  const auto json = nlohmann::json::parse(file, nullptr, false);
+  if (json.is_discarded()) return std::nullopt;
+  Sequence sequence{"desk", folder / "models" / "cube" / "cube.obj", folder / "img", {}, {}, {}};
+  sequence.camera = {640, 480, 607.178466796875, 607.2342529296875, 321.39129638671875, 241.91822814941406};
+  geometry::Pose X_CW = geometry::Pose::Identity();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 4; ++c) X_CW.matrix()(r, c) = json[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)];
+  }
+  sequence.X_WC = geometry::normalized(X_CW.inverse());
+  return sequence;
+}
+
+/// The poses of a film's pictures.
+struct FollowedPoses {
+  std::vector<std::optional<geometry::Pose>> X_WC;  ///< also where it was only predicted.
+  int corrected = 0;                                ///< pictures in which it was measured.
+};
+
+Result<FollowedPoses> follow_ours(const Sequence& sequence, std::size_t count) {
+  const auto folder = fs::temp_directory_path() / fmt::format("cgsr-lab-{}-real", getpid());
+  std::error_code ignored;
+  fs::create_directories(folder, ignored);
+  const auto camera = write_text(folder / "camera.yaml", app::camera_as_yaml(sequence.camera, sequence.name));
+  const auto pose =
+      write_text(folder / "pose.csv", fmt::format("{}\n{}\n", app::kPoseColumns, app::pose_as_csv(sequence.X_WC)));
+  if (!camera) return tl::unexpected(camera.error());
+  if (!pose) return tl::unexpected(pose.error());
+  const auto program = fs::read_symlink("/proc/self/exe").parent_path() / "cgsr";
+  const auto json = scratch_json();
+  const auto result =
+      run_for_json({program.string(), "localize", "--map", sequence.map.string(), "--camera",
+                    (folder / "camera.yaml").string(), "--input", sequence.images.string(), "--pose",
+                    (folder / "pose.csv").string(), "--config", source_path("config/localization/free.toml"), "--csv",
+                    (folder / "answer.csv").string(), "--json", json.string()},
+                   json);
+  const auto answers = app::read_poses(folder / "answer.csv");
+  fs::remove_all(folder, ignored);
+  if (!result) return tl::unexpected(result.error());
+  if (!answers) return tl::unexpected(answers.error());
+  FollowedPoses followed{std::vector<std::optional<geometry::Pose>>(count)};
+  for (const app::PoseRow& row : *answers) {
+    const auto at = static_cast<std::size_t>(*row.frame);
+    if (at >= count) continue;
+    followed.X_WC[at] = row.X;
+    followed.corrected += row.corrected ? 1 : 0;
+  }
+  return followed;
+}
+
+Result<FollowedPoses> follow_visp(const Sequence& sequence, const VispChoice& choice,
+                                  const std::vector<fs::path>& pictures) {
+  VispSettings settings = sequence.visp;
+  settings.range_px = choice.range_px;
+  settings.calls = choice.calls;
+  auto visp = VispEdges::create({{sequence.map}}, sequence.camera, settings);
+  if (!visp) return tl::unexpected(visp.error());
+  FollowedPoses followed{std::vector<std::optional<geometry::Pose>>(pictures.size())};
+  bool begun = false;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const cv::Mat grey = cv::imread(pictures[i].string(), cv::IMREAD_GRAYSCALE);
+    if (i == 0) begun = visp->begin(grey, sequence.X_WC);
+    if (!begun) break;
+    followed.X_WC[i] = visp->track(grey);
+    followed.corrected += followed.X_WC[i] ? 1 : 0;
+  }
+  return followed;
+}
+
+/// How one contender's poses fit the pictures.
+struct SequenceScore {
+  std::string who;
+  double near = 0.0;  ///< share of the visible edges within 3 px, over those.
+  CannyTally tally;
+  FollowedPoses followed;
+
+  /// More pictures, then a better fit.
+  [[nodiscard]] bool is_better_than(const SequenceScore& other) const {
+    return followed.corrected != other.followed.corrected ? followed.corrected > other.followed.corrected
+                                                          : near > other.near;
+  }
+};
+
+SequenceScore score_of(const std::string& who, const Sequence& sequence, const world::Map& map,
+                       const std::vector<fs::path>& pictures, FollowedPoses followed) {
+  SequenceScore score;
+  score.who = who;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (!followed.X_WC[i]) continue;
+    const cv::Mat grey = cv::imread(pictures[i].string(), cv::IMREAD_GRAYSCALE);
+    score.tally.add(distances_to_canny(grey, map, sequence.camera, *followed.X_WC[i]));
+  }
+  score.near = score.tally.places > 0 ? static_cast<double>(score.tally.near) / score.tally.places : 0.0;
+  score.followed = std::move(followed);
+  return score;
+}
+
+void add_score(const Setting& setting, const Sequence& sequence, const SequenceScore& score, Report& report) {
+  const std::string row = sequence.name + ", " + score.who;
+  const auto pictures = static_cast<int>(score.followed.X_WC.size());
+  report.rows.push_back(share_row(row, "corrected", score.followed.corrected, pictures));
+  report.rows.push_back(share_row(row, "followed (Canny)", score.tally.followed, pictures));
+  report.rows.push_back(mean_row(row, "median distance", "px", score.tally.medians, setting.seed));
+  report.rows.push_back(share_row(row, "within 3 px", score.tally.near, score.tally.places));
+}
+
+Result<void> add_film(const Setting& setting, const Sequence& sequence, const world::Map& map,
+                      const std::vector<fs::path>& pictures, const SequenceScore& score, const std::string& name,
+                      Report& report) {
+  const auto seen = film_of_poses(setting, name, map, sequence.camera, pictures, score.followed.X_WC, score.who);
+  if (!seen) return tl::unexpected(seen.error());
+  report.notes.push_back(fmt::format("Film: {} ({}).", seen->string(), score.who));
+  return {};
+}
+
+Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Report& report) {
+  const auto map = world::load_map(sequence.map);
+  if (!map) return tl::unexpected(map.error());
+  const auto pictures = pictures_of(sequence.images);
+  auto followed = follow_ours(sequence, pictures.size());
+  if (!followed) return tl::unexpected(followed.error());
+  const SequenceScore ours = score_of("ours", sequence, *map, pictures, std::move(*followed));
+  add_score(setting, sequence, ours, report);
+  if (auto film = add_film(setting, sequence, *map, pictures, ours, sequence.name + "-ours", report); !film)
+    return film;
+  if (!VispEdges::built() || sequence.map.extension() != ".cao") return {};  // ViSP's tracker reads no .obj
+  std::optional<SequenceScore> best;
+  for (const VispChoice& choice : kVispChoices) {
+    auto theirs_followed = follow_visp(sequence, choice, pictures);
+    if (!theirs_followed) return tl::unexpected(theirs_followed.error());
+    SequenceScore theirs = score_of(choice.name(), sequence, *map, pictures, std::move(*theirs_followed));
+    add_score(setting, sequence, theirs, report);
+    if (!best || theirs.is_better_than(*best)) best = std::move(theirs);
+  }
+  report.rows.push_back(plain_row(fmt::format("{}, ours less the best of ViSP", sequence.name), "within 3 px", "",
+                                  ours.near - best->near, pictures.size()));
+  return add_film(setting, sequence, *map, pictures, *best, sequence.name + "-visp", report);
+}
+
+}  // namespace
+
+Result<void> add_real_sequences(const Setting& setting, const fs::path& data, Report& report) {
+  for (const auto& sequence : {cube_of(data), castel_of(data), desk_of(data)}) {
+    if (!sequence) continue;
+    setting.progress(sequence->name);
+    if (auto added = add_sequence(setting, *sequence, report); !added) return added;
+  }
+  return {};
+}
+
+}  // namespace cgsr::lab
