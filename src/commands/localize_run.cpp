@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include "pipeline/localization/work.h"
 #include "pipeline/world/load.h"
@@ -60,16 +61,27 @@ Result<void> claim_outputs(const LocalizeOptions& options) {
   return files.claim();
 }
 
-/// A pose to follow from was measured or found: unless its width was given, it is believed better than one that odometry carried.
-localization::PriorSigmas start_sigmas(const config::PriorParameters& prior, const LocalizeOptions& options) {
+/// How far the map's middle is from a place, or the farthest corner from its middle: the scale of what the camera sees.
+double viewed_m(const world::Map& map, const geometry::Pose& X_WC) {
+  Eigen::AlignedBox3d bounds;
+  for (const Eigen::Vector3f& vertex : map.vertices) bounds.extend(vertex.cast<double>());
+  return std::max((X_WC.translation() - bounds.center()).norm(), 0.5 * bounds.diagonal().norm());
+}
+
+/// A pose to follow from was measured or found: unless its width was given, it is believed better than one that odometry carried. Its error is some pixels
+/// in the image, so a pose before a model on a table is known better than one in a room: 5 mm at half a metre.
+localization::PriorSigmas start_sigmas(const config::Localization& config, const LocalizeOptions& options,
+                                       double viewed_m) {
+  constexpr double kPlaceOfViewed = 0.01;
   constexpr double kPlace_m = 0.02;
-  constexpr double kTurn_deg = 1.0;
-  config::PriorParameters start = prior;
+  const double place_m = std::min(kPlace_m, kPlaceOfViewed * viewed_m);
+  const double turn_deg = config.tracker.floor ? 1.0 : 0.5;
+  config::PriorParameters start = config.prior;
   if (!options.sigma_m) {
-    for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, kPlace_m);
+    for (double* sigma : {&start.x_m, &start.y_m, &start.z_m}) *sigma = std::min(*sigma, place_m);
   }
   if (!options.sigma_deg) {
-    for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, kTurn_deg);
+    for (double* sigma : {&start.heading_deg, &start.tilt_deg}) *sigma = std::min(*sigma, turn_deg);
   }
   return start.sigmas();
 }
@@ -163,7 +175,10 @@ Result<void> LocalizeRun::open_poses(const LocalizeOptions& options) {
     if (options.units > 0) units_ = static_cast<std::uint32_t>(options.units);
   }
   X_RC_ = X_RC;
-  if (start) start_ = localization::prior_at(*start, start_sigmas(state_->config.prior, options));
+  if (start) {
+    const auto sigmas = start_sigmas(state_->config, options, viewed_m(*state_->map, *start * X_RC));
+    start_ = localization::prior_at(*start, sigmas);
+  }
   return {};
 }
 

@@ -27,6 +27,7 @@ inline Localization six_free_numbers() {
   free.tracker.floor = false;
   free.tracker.drift_m = 0.005;  // a hand moves without odometry
   free.tracker.drift_deg = 0.5;
+  free.localizer.min_evidence = 0.36;  // a model that is poorer than the thing agrees less with its images
   free.localizer.decision.max_error_log_odds = -1.0;  // mostly a small model from near, of few lines
   return free;
 }
