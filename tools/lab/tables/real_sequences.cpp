@@ -104,32 +104,27 @@ void take_board(const fs::path& file, Sequence& sequence) {
                   sequence.name, kAgree_px, words);
 }
 
-/// ViSP's file of a start pose: translation and rotation vector of the model in the camera. \return the camera's in the model.
-std::optional<geometry::Pose> start_pose(const fs::path& path) {
-  const auto v = numbers_of(path);
+/// A film of ViSP's: a folder with `<model>.cao`, the pictures in `img` and `<model>.0.pos`, the start pose: translation and rotation vector of the
+/// model in the camera. \param camera, visp  of its `.xml`. \return nothing: the folder is not there, or its start pose is none.
+std::optional<Sequence> visp_film(const fs::path& folder, const std::string& model, const geometry::Camera& camera,
+                                  const VispSettings& visp) {
+  const auto v = numbers_of(folder / (model + ".0.pos"));
   if (v.size() != 6) return std::nullopt;
   geometry::Pose X_CW = geometry::Pose::Identity();
   X_CW.translation() = Vector3d(v[0], v[1], v[2]);
   X_CW.linear() = geometry::rotation_of({v[3], v[4], v[5]});
-  return X_CW.inverse();
+  return Sequence{folder.filename().string(), folder / (model + ".cao"), folder / "img", camera, X_CW.inverse(), visp};
 }
 
 std::optional<Sequence> cube_of(const fs::path& data) {
-  const fs::path folder = data / "localization" / "cube";
-  const auto X_WC = start_pose(folder / "cube.0.pos");
-  if (!X_WC) return std::nullopt;
-  // Of cube.xml.
-  const geometry::Camera camera{640, 480, 547.7367575, 542.0744058, 338.7036994, 234.5083345};
-  return Sequence{"cube", folder / "cube.cao", folder / "img", camera, *X_WC, {8, 1, 4.0, 65.0, 75.0, 0.1, 0.9}};
+  return visp_film(data / "localization" / "cube", "cube",
+                   {640, 480, 547.7367575, 542.0744058, 338.7036994, 234.5083345}, {8, 1, 4.0, 65.0, 75.0, 0.1, 0.9});
 }
 
 std::optional<Sequence> castel_of(const fs::path& data) {
-  const fs::path folder = data / "localization" / "castel";
-  const auto X_WC = start_pose(folder / "chateau.0.pos");
-  if (!X_WC) return std::nullopt;
-  // Of chateau.xml.
-  const geometry::Camera camera{640, 480, 615.1674804688, 615.1675415039, 312.1889953613, 243.4373779297};
-  return Sequence{"castel", folder / "chateau.cao", folder / "img", camera, *X_WC, {8, 1, 5.0, 70.0, 80.0, 0.01, 2.0}};
+  return visp_film(data / "localization" / "castel", "chateau",
+                   {640, 480, 615.1674804688, 615.1675415039, 312.1889953613, 243.4373779297},
+                   {8, 1, 5.0, 70.0, 80.0, 0.01, 2.0});
 }
 
 std::optional<Sequence> desk_of(const fs::path& data) {
@@ -140,7 +135,14 @@ std::optional<Sequence> desk_of(const fs::path& data) {
   Sequence sequence{"desk", folder / "models" / "cube" / "cube.obj", folder / "all", {}, {}, {}};
   sequence.camera = {640, 480, 607.178466796875, 607.2342529296875, 321.39129638671875, 241.91822814941406};
   sequence.X_WC = pose_in(json).inverse();
-  take_board(folder / "sequence" / "apriltag_data.json", sequence);
+  const fs::path board = folder / "sequence" / "apriltag_data.json";
+  try {
+    take_board(board, sequence);
+  } catch (const nlohmann::json::exception& wrong) {
+    sequence.board.clear();
+    sequence.board_note =
+        fmt::format("{}: no rows beside the marker board: {}: {}", sequence.name, board.string(), wrong.what());
+  }
   return sequence;
 }
 
@@ -265,6 +267,7 @@ double corner_distance_px(const world::Map& map, const geometry::Camera& camera,
 void add_board_rows(const Setting& setting, const Sequence& sequence, const world::Map& map, const FollowedPoses& ours,
                     Report& report) {
   constexpr double kNear_px = 15.0, kFar_px = 30.0, kNear_m = 0.015;
+  if (!sequence.board_note.empty()) report.notes.push_back(sequence.board_note);
   std::vector<double> distances_px, distances_cm;
   int judged = 0, near = 0, near_in_image = 0, far_and_claimed = 0;
   for (std::size_t i = 1; i < std::min(sequence.board.size(), ours.X_WC.size()); ++i) {
@@ -286,7 +289,6 @@ void add_board_rows(const Setting& setting, const Sequence& sequence, const worl
   report.rows.push_back(share_row(row, "claimed over 30 px off", far_and_claimed, judged));
   report.rows.push_back(mean_row(row, "corners off", "px", distances_px, setting.seed));
   report.rows.push_back(mean_row(row, "position off", "cm", distances_cm, setting.seed));
-  report.notes.push_back(sequence.board_note);
 }
 
 Result<void> add_sequence(const Setting& setting, const Sequence& sequence, Report& report) {
