@@ -54,6 +54,24 @@ struct LineDistances {
   }
 };
 
+/// How far a corner lies from the end of the line that ends there, along it, in sigmas.
+struct EndDistance {
+  SteppedCamera camera;
+  EndMatch match;
+  double sigma_px;
+  double fx, fy, cx, cy;
+
+  template <class T>
+  bool operator()(const T* corner, const T* step, T* residual) const {
+    const Vector3<T> p_C = camera.in_camera<T>(Eigen::Map<const Vector3<T>>(corner), step);
+    if (!(p_C.z() > T(kNearest_m))) return false;
+    const T u = fx * p_C.x() / p_C.z() + cx;
+    const T v = fy * p_C.y() / p_C.z() + cy;
+    residual[0] = (match.direction.x() * u + match.direction.y() * v - match.offset_px) / sigma_px;
+    return true;
+  }
+};
+
 /// A corner stays about where it was measured.
 struct Place {
   Eigen::Vector3d p;
@@ -229,6 +247,17 @@ class Adjustment {
     }
   }
 
+  void add_ends(std::span<const EndMatch> ends, const geometry::Camera& camera) {
+    for (const EndMatch& match : ends) {
+      auto* loss =
+          new ceres::ScaledLoss(new ceres::CauchyLoss(parameters_->end_robust), match.weight, ceres::TAKE_OWNERSHIP);
+      problem_.AddResidualBlock(
+          cost<EndDistance, 1, 3, 6>({SteppedCamera(views_[match.view].X_WC), match, parameters_->end_sigma_px,
+                                      camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}),
+          loss, corner(match.corner), step(match.view));
+    }
+  }
+
   Adjusted solve() {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -286,12 +315,13 @@ class Adjustment {
 }  // namespace
 
 Adjusted adjust(const ElasticMap& map, std::vector<Eigen::Vector3d>& corners, std::span<View> views,
-                std::span<const LineMatch> matches, const geometry::Camera& camera, const RefineParameters& parameters,
-                bool with_sigmas) {
+                std::span<const LineMatch> matches, std::span<const EndMatch> ends, const geometry::Camera& camera,
+                const RefineParameters& parameters, bool with_sigmas) {
   Adjustment adjustment(map, corners, views, parameters);
   adjustment.add_map();
   adjustment.add_poses();
   adjustment.add_matches(matches, camera);
+  adjustment.add_ends(ends, camera);
   Adjusted adjusted = adjustment.solve();
   if (with_sigmas) adjusted.sigma_m = adjustment.sigmas();
   return adjusted;

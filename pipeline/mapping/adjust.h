@@ -27,7 +27,7 @@ struct Adjusted {
 /// \param corners  in W, metres: from where it begins, and where it ends.  \param views  their X_WC likewise.
 /// \param with_sigmas  also work out how well each corner is known then.
 Adjusted adjust(const ElasticMap& map, std::vector<Eigen::Vector3d>& corners, std::span<View> views,
-                std::span<const LineMatch> matches, const geometry::Camera& camera, const RefineParameters& parameters,
-                bool with_sigmas);
+                std::span<const LineMatch> matches, std::span<const EndMatch> ends, const geometry::Camera& camera,
+                const RefineParameters& parameters, bool with_sigmas);
 
 }  // namespace cgsr::mapping

@@ -8,6 +8,7 @@
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/segment_table.h"
 #include "pipeline/mapping/map_view.h"
+#include "pipeline/mapping/observe.h"
 
 namespace cgsr::mapping {
 namespace {
@@ -18,6 +19,10 @@ using Eigen::Vector3d;
 constexpr double kLargest_m = 2.5;  // of a piece of furniture
 constexpr double kReach_m = 0.8;    // along the floor
 constexpr double kStep_m = 0.04;
+constexpr double kLevel_m = 0.05;       // up and down, of what does not stand on the floor
+constexpr double kUp_sigmas = 2.0;      // of its height
+constexpr double kBeside_sigmas = 2.6;  // nearer it is where the map has it
+constexpr double kStands_m = 0.02;      // above the floor
 constexpr double kFineStep_m = 0.01;
 constexpr int kFineSteps = 6;
 constexpr double kFarthest_m = 5.0;
@@ -27,11 +32,14 @@ constexpr double kLongest_px = 60.0;  // of an edge, that counts
 constexpr float kCoarse_px = 4.0F;    // how far off a line counts half
 constexpr float kFine_px = 2.0F;
 constexpr float kAngle_rad = 0.12F;
-constexpr double kFitsHere = 0.25;      // a share found from which on a part is not looked for elsewhere
+constexpr double kFitsHere = 0.35;      // a share found from which on a part is not looked for elsewhere
 constexpr double kFitsThere = 0.4;      // a share found from which on it is there,
-constexpr double kClearly = 2.0;        // and so many times what is found where the map has it
+constexpr double kClearly = 1.8;        // and so many times what is found where the map has it
 constexpr double kExpected_px = 400.0;  // at least, there
-constexpr int kFewestImages = 6;
+constexpr int kFewestImages = 5;
+constexpr double kSeen_images = 3.0;  // that show it there, counted by the share that is found
+constexpr double kNotOwn = 0.5;       // of a perceived edge that another part explains, that counts
+constexpr float kOwned_px = 3.0F;     // off an edge of the map, at most, what that explains
 constexpr double kShown = 0.4;        // of a stretch in an image, from which on that shows it
 constexpr double kShortest_m = 0.08;  // of an edge that is proposed
 constexpr std::size_t kTried = 10;    // best places of the grid that are looked at closely
@@ -56,7 +64,12 @@ struct Share {
 
 class Finder {
  public:
-  Finder(std::span<const View> views, const geometry::Camera& camera) : views_(views), camera_(camera) {}
+  Finder(const ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
+         const RefineParameters& refined_with)
+      : views_(views), camera_(camera), owners_(owners_of(map, observe(map, views, camera, refined_with, kOwned_px))) {}
+
+  /// Whose edges are looked for from now on.
+  void look_for(std::uint32_t part) { part_ = part; }
 
   /// What the images show of some edges when they are moved; nothing hides them.
   [[nodiscard]] Share share_of(const std::vector<Stretch>& edges, const Vector3d& middle, const Vector3d& d) const {
@@ -114,7 +127,8 @@ class Finder {
     const Vector2f along = (b - a) / (2.0F * half);
     const Vector2f middle = 0.5F * (a + b);
     Found best;
-    for (const localization::PerceivedEdge& edge : views_[view].edges.edges()) {
+    for (std::size_t i = 0; i < views_[view].edges.size(); ++i) {
+      const localization::PerceivedEdge& edge = views_[view].edges.edges()[i];
       if (std::abs(along.dot(edge.normal())) > kAngle_rad) continue;
       const Vector2f offset = edge.middle - middle;
       const float place = offset.dot(along);
@@ -122,7 +136,9 @@ class Finder {
       if (overlap <= 0.0F) continue;
       const float off_px = offset.dot(edge.normal());
       const float off = off_px / sharpness_px;
-      const auto counted = static_cast<double>(overlap / (1.0F + off * off));
+      const std::int64_t owner = owners_[view][i];
+      const double share = owner >= 0 && owner != part_ ? kNotOwn : 1.0;
+      const double counted = share * static_cast<double>(overlap / (1.0F + off * off));
       if (counted > best.overlap_px) best = {counted, static_cast<double>(off_px)};
     }
     return best;
@@ -130,6 +146,8 @@ class Finder {
 
   std::span<const View> views_;
   geometry::Camera camera_;
+  Owners owners_;
+  std::int64_t part_ = -1;
 };
 
 std::vector<Stretch> edges_of(const ElasticMap& map, std::uint32_t part) {
@@ -183,15 +201,19 @@ struct Place {
 
 /// Places of the grid, the best ones first, a step and a half apart at least.
 std::vector<Place> best_places(const Finder& finder, const std::vector<Stretch>& edges, const Vector3d& middle,
-                               double least_m) {
+                               double least_m, double up_m) {
   std::vector<Place> places;
   const int reach = static_cast<int>(kReach_m / kStep_m);
+  const int levels = static_cast<int>(std::lround(up_m / kLevel_m));
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
-      const Vector3d d(x * kStep_m, y * kStep_m, 0.0);
-      if (d.norm() < least_m || d.norm() > kReach_m) continue;
-      const Share share = finder.share_of(edges, middle, d);
-      if (share.expected_px >= kExpected_px) places.push_back({d, share.value()});
+      const double along_floor = kStep_m * std::hypot(x, y);
+      if (along_floor < least_m || along_floor > kReach_m) continue;
+      for (int z = -levels; z <= levels; ++z) {
+        const Vector3d d(x * kStep_m, y * kStep_m, z * kLevel_m);
+        const Share share = finder.share_of(edges, middle, d);
+        if (share.expected_px >= kExpected_px) places.push_back({d, share.value()});
+      }
     }
   }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.share > b.share; });
@@ -212,22 +234,23 @@ void move_part(ElasticMap& map, std::uint32_t part, const Vector3d& d) {
 }
 
 /// With what hides it there, and more exactly.
-std::optional<MovedPart> look_closely(ElasticMap& map, std::uint32_t part, const Vector3d& d, const Finder& finder,
-                                      std::span<const View> views, const geometry::Camera& camera,
+std::optional<MovedPart> look_closely(ElasticMap& map, std::uint32_t part, const Vector3d& d, bool stands,
+                                      const Finder& finder, std::span<const View> views, const geometry::Camera& camera,
                                       const RefineParameters& parameters) {
   move_part(map, part, d);
   const auto stretches = visible_of(map, part, finder, views, camera, parameters);
   move_part(map, part, -d);
   MovedPart best;
+  const auto try_at = [&](const Vector3d& fine) {
+    const Share share = share_of(finder, stretches, fine);
+    if (share.expected_px < kExpected_px || share.images < kFewestImages || share.value() <= best.share_there) return;
+    best = {part, d + fine, 0.0, share.value(), share.images, {}};
+  };
+  const int levels = stands ? 0 : kFineSteps;
+  for (int z = -levels; z <= levels; ++z) try_at({0.0, 0.0, z * kFineStep_m});
+  const double level = best.images > 0 ? best.shift.z() - d.z() : 0.0;
   for (int x = -kFineSteps; x <= kFineSteps; ++x) {
-    for (int y = -kFineSteps; y <= kFineSteps; ++y) {
-      const Vector3d fine(x * kFineStep_m, y * kFineStep_m, 0.0);
-      const Share share = share_of(finder, stretches, fine);
-      if (share.expected_px < kExpected_px || share.images < kFewestImages || share.value() <= best.share_there) {
-        continue;
-      }
-      best = {part, d + fine, 0.0, share.value(), share.images, {}};
-    }
+    for (int y = -kFineSteps; y <= kFineSteps; ++y) try_at({x * kFineStep_m, y * kFineStep_m, level});
   }
   if (best.images == 0) return std::nullopt;
   return best;
@@ -273,33 +296,52 @@ std::vector<Proposal> edges_there(ElasticMap& map, const MovedPart& moved, const
   return proposals;
 }
 
+/// Where a part fits best beside its place, as it was measured: what fits badly was pulled out of shape by what it was taken for.
+std::optional<MovedPart> best_place(ElasticMap& map, std::uint32_t part, const Finder& finder,
+                                    std::span<const View> views, const geometry::Camera& camera,
+                                    const RefineParameters& refined_with) {
+  auto corners = map.corners();
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t corner : map.parts()[part].corners) {
+    corners[corner] = map.measured()[corner];
+    box.extend(corners[corner]);
+  }
+  map.move(corners);
+  const bool stands = box.min().z() < kStands_m;
+  const double up_m = stands ? 0.0 : kUp_sigmas * refined_with.map_sigma_m;
+  std::optional<MovedPart> best;
+  for (const Place& place :
+       best_places(finder, edges_of(map, part), box.center(), kBeside_sigmas * refined_with.map_sigma_m, up_m)) {
+    auto closer = look_closely(map, part, place.d, stands, finder, views, camera, refined_with);
+    if (closer) closer = look_closely(map, part, closer->shift, stands, finder, views, camera, refined_with);
+    if (closer && (!best || closer->share_there > best->share_there)) best = closer;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<MovedPart> find_moved_parts(ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
                                         const RefineParameters& refined_with) {
-  const Finder finder(views, camera);
+  Finder finder(map, views, camera, refined_with);
   const auto at_rest = map.corners();
   std::vector<MovedPart> moved;
   for (std::uint32_t part = 0; part < map.parts().size(); ++part) {
     Eigen::AlignedBox3d box;
     for (const std::uint32_t corner : map.parts()[part].corners) box.extend(map.corners()[corner]);
     if (box.sizes().maxCoeff() > kLargest_m) continue;
+    finder.look_for(part);
     const Share here = share_of(finder, visible_of(map, part, finder, views, camera, refined_with), Vector3d::Zero());
     if (here.expected_px < kExpected_px || here.value() > kFitsHere) continue;
-    std::optional<MovedPart> best;
-    for (const Place& place : best_places(finder, edges_of(map, part), box.center(), 2.6 * refined_with.map_sigma_m)) {
-      auto closer = look_closely(map, part, place.d, finder, views, camera, refined_with);
-      if (closer) closer = look_closely(map, part, closer->shift, finder, views, camera, refined_with);
-      if (closer && (!best || closer->share_there > best->share_there)) best = closer;
-    }
-    if (!best) continue;
-    best->share_here = here.value();
-    if (best->share_there >= kFitsThere && best->share_there >= kClearly * here.value()) {
+    auto best = best_place(map, part, finder, views, camera, refined_with);
+    if (best && best->share_there >= std::max(kFitsThere, kClearly * here.value()) &&
+        best->share_there * best->images >= kSeen_images) {
+      best->share_here = here.value();
       best->edges = edges_there(map, *best, finder, views, camera, refined_with);
       moved.push_back(*best);
     }
+    map.move(at_rest);
   }
-  map.move(at_rest);
   return moved;
 }
 

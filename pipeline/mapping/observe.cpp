@@ -1,7 +1,10 @@
 #include "pipeline/mapping/observe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "pipeline/localization/expected.h"
 #include "pipeline/localization/matching.h"
@@ -15,11 +18,17 @@ constexpr float kTelling_px = 20.0F;       // a shorter piece may well go unseen
 constexpr double kRivalShare = 0.3;        // of the distance to another line that it could be
 constexpr std::size_t kMostPerceived = localization::SegmentTable::kBins * 20;
 
+constexpr double kAtCorner = 0.005;  // of an edge's length, from its end
+constexpr float kBorder_px = 3.0F;   // nearer to the image's border a line is cut off by it
+
+constexpr std::array<float, 2> kSide{-1.0F, 1.0F};  // of a piece's middle, on which an end of it lies
+
 class Observer {
  public:
   Observer(const ElasticMap& map, const geometry::Camera& camera, const RefineParameters& parameters)
       : map_(&map),
         parameters_(&parameters),
+        camera_(camera),
         shown_(map, camera, parameters),
         matcher_(static_cast<std::size_t>(parameters.max_pieces), kMostPerceived) {}
 
@@ -32,6 +41,7 @@ class Observer {
       seen_px[match.projected] += match.overlap_px();
       observed.matches.push_back(line_match(index, view, expected, match));
     }
+    take_ends(index, view, expected, radius_px, matches, observed);
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const float length = 2.0F * pieces[i].half_length;
       if (length < kTelling_px) continue;
@@ -39,12 +49,71 @@ class Observer {
       ++edge.expected;
       edge.matched += seen_px[i] > 0.3F * length ? 1 : 0;
     }
-    std::vector<bool> explained(view.edges.size(), false);
-    for (const localization::Match& match : matches) explained[match.perceived] = true;
-    observed.explained.push_back(std::move(explained));
+    observed.edge_at.push_back(edges_at(view, expected, matches));
   }
 
  private:
+  /// Of each perceived edge the map's edge that it was matched with, the nearest.
+  static std::vector<std::int64_t> edges_at(const View& view, const localization::ExpectedView& expected,
+                                            std::span<const localization::Match> matches) {
+    std::vector<std::int64_t> edge_at(view.edges.size(), -1);
+    std::vector<float> off_px(view.edges.size(), std::numeric_limits<float>::infinity());
+    for (const localization::Match& match : matches) {
+      const localization::ProjectedPiece& piece = expected.projected()[match.projected];
+      const localization::PerceivedEdge& line = view.edges.edges()[match.perceived];
+      const float off = std::abs((line.middle - piece.middle).dot(line.normal()));
+      if (off >= off_px[match.perceived]) continue;
+      off_px[match.perceived] = off;
+      edge_at[match.perceived] = expected.pieces()[piece.piece].edge;
+    }
+    return edge_at;
+  }
+
+  /// The end of a matched line that is nearest to an end of its expected piece: at the piece's first end, and at its second.
+  struct NearestLine {
+    float off_px = std::numeric_limits<float>::infinity();  ///< along the piece.
+    const localization::PerceivedEdge* line = nullptr;
+  };
+  using NearestLines = std::array<NearestLine, 2>;
+
+  void take_ends(std::uint32_t index, const View& view, const localization::ExpectedView& expected, float radius_px,
+                 std::span<const localization::Match> matches, Observed& observed) const {
+    const auto pieces = expected.projected();
+    std::vector<NearestLines> nearest(pieces.size());
+    for (const localization::Match& match : matches) {
+      const localization::ProjectedPiece& piece = pieces[match.projected];
+      const localization::PerceivedEdge& line = view.edges.edges()[match.perceived];
+      const float middle = (line.middle - piece.middle).dot(piece.direction);
+      for (std::size_t end = 0; end < 2; ++end) {
+        const float off = std::abs(middle + kSide.at(end) * (line.half_length - piece.half_length));
+        NearestLine& best = nearest[match.projected].at(end);
+        if (off < radius_px && off < best.off_px) best = {off, &line};
+      }
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (std::size_t end = 0; end < 2; ++end) {
+        if (nearest[i].at(end).line == nullptr) continue;
+        const auto match = end_match(index, expected, pieces[i], kSide.at(end), *nearest[i].at(end).line);
+        if (match) observed.ends.push_back(*match);
+      }
+    }
+  }
+
+  /// Nothing where the piece ends at no corner, or the line at the image's border.
+  [[nodiscard]] std::optional<EndMatch> end_match(std::uint32_t index, const localization::ExpectedView& expected,
+                                                  const localization::ProjectedPiece& piece, float side,
+                                                  const localization::PerceivedEdge& line) const {
+    const std::uint32_t edge = expected.pieces()[piece.piece].edge;
+    const double place = place_on(edge, expected.point_at(piece, side * piece.half_length));
+    if (place > kAtCorner && place < 1.0 - kAtCorner) return std::nullopt;
+    const float alike = line.direction.dot(piece.direction) < 0.0F ? -1.0F : 1.0F;
+    const Eigen::Vector2f end = line.middle + alike * side * line.half_length * line.direction;
+    const Eigen::Array2f last(static_cast<float>(camera_.width_px - 1), static_cast<float>(camera_.height_px - 1));
+    if ((end.array() < kBorder_px).any() || (end.array() > last - kBorder_px).any()) return std::nullopt;
+    return EndMatch{index, map_->ends_of(edge).at(place > 0.5 ? 1 : 0), piece.direction.cast<double>(),
+                    double{piece.direction.dot(end)}, double{line.weight} * double{piece.weight}};
+  }
+
   [[nodiscard]] double place_on(std::uint32_t edge, const Eigen::Vector3d& p) const {
     const auto& vertices = map_->map().edges[edge].vertices;
     const Eigen::Vector3d a = map_->map().vertices[vertices[0]].cast<double>();
@@ -72,6 +141,7 @@ class Observer {
 
   const ElasticMap* map_;
   const RefineParameters* parameters_;
+  geometry::Camera camera_;
   MapView shown_;
   localization::Matcher matcher_;
 };
@@ -87,6 +157,16 @@ Observed observe(const ElasticMap& map, std::span<const View> views, const geome
     observer.take(static_cast<std::uint32_t>(i), views[i], radius_px, observed);
   }
   return observed;
+}
+
+Owners owners_of(const ElasticMap& map, const Observed& observed) {
+  Owners owners = observed.edge_at;
+  for (auto& of_view : owners) {
+    for (std::int64_t& owner : of_view) {
+      if (owner >= 0) owner = map.part_of(map.ends_of(static_cast<std::uint32_t>(owner))[0]);
+    }
+  }
+  return owners;
 }
 
 }  // namespace cgsr::mapping

@@ -14,8 +14,11 @@ struct RefineParameters {
       0.002;  ///< what lies or stands on another part stays on it: its distance from that part's surface.
   double lies_on_m = 0.004;    ///< what is at most this far from a surface lies on it.
   double line_sigma_px = 0.6;  ///< of a perceived line against the map's, besides the line's own.
+  double end_sigma_px = 2.0;   ///< of where a perceived line ends, against the corner at which its edge does,
+  double end_robust = 1.0;     ///< and Cauchy's constant of that, in sigmas: lines end for other reasons too.
   double robust = 2.0;         ///< Cauchy's constant in sigmas: further out a distance counts less and less.
-  std::array<float, 7> radius_px{24.0F, 24.0F, 16.0F, 10.0F, 7.0F, 5.0F, 4.0F};  ///< of a match, round by round.
+  std::array<float, 9> radius_px{24.0F, 24.0F, 16.0F, 12.0F, 10.0F,
+                                 8.0F,  6.0F,  5.0F,  4.0F};  ///< of a match, round by round.
   double correlated_images =
       40.0;  ///< so many images share the error of their given poses, and together count once; it fades with half of that.
   double odometry_share = 0.03;       ///< of the way between two images, what odometry is off by ...

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "pipeline/localization/expected.h"
 #include "pipeline/mapping/map_view.h"
@@ -12,12 +13,13 @@
 namespace cgsr::mapping {
 namespace {
 
-constexpr double kReach_sigmas = 2.6;  // of a part's place
+constexpr double kReach_sigmas = 3.2;  // of a part's place
 constexpr double kStep_m = 0.02;
 constexpr double kFineStep_m = 0.006;
 constexpr int kFineSteps = 3;
-constexpr double kPriorShare = 0.03;  // of what is expected, that a place one sigma from the measured one costs
-constexpr double kClearly = 0.03;     // of what is expected, that another place must find more
+constexpr double kPriorShare = 0.008;  // of what is expected, that a place one sigma from the measured one costs
+constexpr double kClearly = 0.015;     // of what is expected, that another place must find more
+constexpr double kOthersShare = 0.5;   // of a perceived edge that another part explains, that counts
 constexpr float kAngle_rad = 0.15F;
 constexpr double kLongest_px = 60.0;  // of an edge, that counts
 constexpr double kNearest_m = 0.1;
@@ -42,8 +44,12 @@ Eigen::Vector3d mean_move(const ElasticMap& map, const Part& part) {
 class PartSearch {
  public:
   PartSearch(const ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
-             const RefineParameters& parameters, double sharpness_px)
-      : views_(views), camera_(camera), sigma_m_(parameters.map_sigma_m), sharpness_px_(sharpness_px) {
+             const RefineParameters& parameters, Owners owners, double sharpness_px)
+      : views_(views),
+        camera_(camera),
+        sigma_m_(parameters.map_sigma_m),
+        sharpness_px_(sharpness_px),
+        owners_(std::move(owners)) {
     stretches_.resize(map.parts().size());
     for (const Part& part : map.parts()) moved_.push_back(mean_move(map, part));
     MapView shown(map, camera, parameters);
@@ -65,7 +71,7 @@ class PartSearch {
     for (const Stretch& stretch : stretches) expected += stretch.weight * length_of(stretch);
     const auto score = [&](const Eigen::Vector3d& d) {
       double sum = -kPriorShare * expected * (moved_[part] + d).squaredNorm() / (sigma_m_ * sigma_m_);
-      for (const Stretch& stretch : stretches) sum += stretch.weight * found(stretch, d);
+      for (const Stretch& stretch : stretches) sum += stretch.weight * found(stretch, d, part);
       return sum;
     };
     const double unmoved = score(Eigen::Vector3d::Zero());
@@ -112,7 +118,7 @@ class PartSearch {
   }
 
   /// Pixels of a stretch, moved by d, beside which an edge was perceived, each by how near.
-  [[nodiscard]] double found(const Stretch& stretch, const Eigen::Vector3d& d) const {
+  [[nodiscard]] double found(const Stretch& stretch, const Eigen::Vector3d& d, std::int64_t part) const {
     const View& view = views_[stretch.view];
     const auto a = pixel_of(view, stretch.p0 + d);
     const auto b = pixel_of(view, stretch.p1 + d);
@@ -129,7 +135,9 @@ class PartSearch {
       for (int k = -2; k <= 2; ++k) {
         const int at = (bin + k + (side < 0 ? kBins / 2 : 0) + 2 * kBins) % kBins;
         for (std::size_t i = view.edges.first_of(at); i < view.edges.first_of(at + 1); ++i) {
-          best = std::max(best, common(view.edges.edges()[i], middle, along, 0.5F * length));
+          const std::int64_t owner = owners_.empty() ? -1 : owners_[stretch.view][i];
+          const double share = owner >= 0 && owner != part ? kOthersShare : 1.0;
+          best = std::max(best, share * common(view.edges.edges()[i], middle, along, 0.5F * length));
         }
       }
     }
@@ -153,14 +161,15 @@ class PartSearch {
   double sharpness_px_;
   std::vector<Eigen::Vector3d> moved_;
   std::vector<std::vector<Stretch>> stretches_;
+  Owners owners_;
 };
 
 }  // namespace
 
 std::vector<Eigen::Vector3d> search_parts(const ElasticMap& map, std::span<const View> views,
                                           const geometry::Camera& camera, const RefineParameters& parameters,
-                                          double sharpness_px) {
-  const PartSearch search(map, views, camera, parameters, sharpness_px);
+                                          Owners owners, double sharpness_px) {
+  const PartSearch search(map, views, camera, parameters, std::move(owners), sharpness_px);
   std::vector<Eigen::Vector3d> shifts;
   for (std::uint32_t i = 0; i < map.parts().size(); ++i) {
     double lowest = std::numeric_limits<double>::infinity();

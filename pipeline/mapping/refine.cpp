@@ -7,8 +7,11 @@
 namespace cgsr::mapping {
 namespace {
 
-// After the rounds in which the poses have settled: how far these are off then.
-constexpr std::array<double, 4> kSharpness_px{0.0, 5.0, 3.5, 2.5};
+constexpr float kExplained_px = 3.0F;  // off an edge of the map, at most, what that explains
+constexpr std::size_t kSettled = 2;    // rounds, after which poses are good enough to tell what explains what
+
+// Before each round: how far the poses are off then; 0: parts are not searched.
+constexpr std::array<double, 9> kSharpness_px{0.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.5, 2.0, 0.0};
 
 void shift_parts(const ElasticMap& map, const std::vector<Eigen::Vector3d>& shifts,
                  std::vector<Eigen::Vector3d>& corners) {
@@ -26,12 +29,15 @@ Refined refine(ElasticMap& map, std::span<View> views, const geometry::Camera& c
     map.move(refined.corners);
     if (round < kSharpness_px.size() && kSharpness_px.at(round) > 0.0 &&
         parameters.shape_sigma_m < parameters.map_sigma_m) {
-      shift_parts(map, search_parts(map, views, camera, parameters, kSharpness_px.at(round)), refined.corners);
+      const auto owners =
+          owners_of(map, round < kSettled ? Observed{} : observe(map, views, camera, parameters, kExplained_px));
+      shift_parts(map, search_parts(map, views, camera, parameters, owners, kSharpness_px.at(round)), refined.corners);
       map.move(refined.corners);
     }
     const Observed observed = observe(map, views, camera, parameters, parameters.radius_px.at(round));
     const bool last = round + 1 == rounds;
-    const Adjusted adjusted = adjust(map, refined.corners, views, observed.matches, camera, parameters, last);
+    const Adjusted adjusted =
+        adjust(map, refined.corners, views, observed.matches, observed.ends, camera, parameters, last);
     if (last) refined.sigma_m = adjusted.sigma_m;
     if (progress) progress(static_cast<int>(round), adjusted);
   }

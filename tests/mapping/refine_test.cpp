@@ -85,7 +85,7 @@ TEST(Refine, KeepsTheWayBetweenPosesWhoseErrorLasts) {
   }
   auto corners = map.measured();
 
-  const Adjusted adjusted = adjust(map, corners, views, {}, small_camera(), {}, false);
+  const Adjusted adjusted = adjust(map, corners, views, {}, {}, small_camera(), {}, false);
 
   EXPECT_TRUE(adjusted.solved);
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -176,9 +176,9 @@ TEST(MovedParts, FindsTheChairWhereItStandsNow) {
 
   ASSERT_EQ(moved.size(), 1U);
   EXPECT_EQ(map.parts()[moved[0].part].name, "chair");
-  Eigen::Vector3d now = Eigen::Vector3d::Zero();
-  for (const std::uint32_t corner : map.parts()[moved[0].part].corners) now += map.corners()[corner] / 8.0;
-  EXPECT_LT((now + moved[0].shift - Eigen::Vector3d(2.4, 2.0, 0.225)).norm(), 0.03);
+  Eigen::Vector3d measured = Eigen::Vector3d::Zero();
+  for (const std::uint32_t corner : map.parts()[moved[0].part].corners) measured += map.measured()[corner] / 8.0;
+  EXPECT_LT((measured + moved[0].shift - Eigen::Vector3d(2.4, 2.0, 0.225)).norm(), 0.03);
   EXPECT_GE(moved[0].edges.size(), 4U);
   for (const Proposal& edge : moved[0].edges) {
     EXPECT_EQ(edge.part, "chair");
