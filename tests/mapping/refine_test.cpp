@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/mapping/moved_parts.h"
+#include "pipeline/mapping/observe.h"
 #include "pipeline/mapping/propose.h"
 #include "tests/mapping/furnished_room.h"
 
@@ -90,6 +91,62 @@ TEST(Refine, KeepsTheWayBetweenPosesWhoseErrorLasts) {
   EXPECT_TRUE(adjusted.solved);
   for (std::size_t i = 0; i < views.size(); ++i) {
     EXPECT_LT((views[i].X_WC.translation() - views[i].given.X_WC.translation()).norm(), 1e-6) << i;
+  }
+}
+
+double off_its_end_px(const EndMatch& match, const ElasticMap& map, const View& view) {
+  const Eigen::Vector3d p_C = view.X_WC.inverse() * map.corners()[match.corner];
+  const geometry::Camera camera = small_camera();
+  const Eigen::Vector2d pixel(camera.fx_px * p_C.x() / p_C.z() + camera.cx_px,
+                              camera.fy_px * p_C.y() / p_C.z() + camera.cy_px);
+  return match.direction.dot(pixel) - match.offset_px;
+}
+
+TEST(Observe, LinesEndAtTheCornersOfTheirEdges) {
+  const std::string text = room_as_obj();
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  const ElasticMap map = elastic(*file, text);
+  const auto views = views_of(text, 0.0, 0.0, 20, 1);
+
+  const Observed observed = observe(map, views, small_camera(), {}, 4.0F);
+
+  ASSERT_GT(observed.ends.size(), 100U);
+  for (const EndMatch& match : observed.ends) EXPECT_NEAR(off_its_end_px(match, map, views[match.view]), 0.0, 0.6);
+}
+
+// A sheet's edges hold it across. Shown by its lower and upper edge alone, only where these end says how far along them it hangs.
+TEST(Adjust, LinesThatEndHoldACornerAlongThem) {
+  const std::string truth = room_as_obj();
+  const auto right = parse_obj(truth, "room");
+  ASSERT_TRUE(right);
+  auto points = right->points;
+  std::vector<std::uint32_t> of_sheet;
+  for (const auto& face : right->faces) {
+    if (right->parts[face.part] == "sheet") of_sheet = face.corners;
+  }
+  for (const std::uint32_t corner : of_sheet) points[corner].y() += 0.04;
+  const std::string text = obj_text(*right, points, {});
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  const ElasticMap map = elastic(*file, text);
+  const auto is_level = [](const LineMatch& match) { return std::abs(match.normal.y()) > 0.8; };
+  for (const bool with_ends : {false, true}) {
+    auto views = views_of(truth, 0.0, 0.0, 20, 1);
+    Observed observed = observe(map, views, small_camera(), {}, 16.0F);
+    std::erase_if(observed.matches, [&](const LineMatch& match) { return !is_level(match); });
+    auto corners = map.measured();
+
+    const std::vector<EndMatch> ends = with_ends ? observed.ends : std::vector<EndMatch>{};
+    adjust(map, corners, views, observed.matches, ends, small_camera(), {}, false);
+
+    const std::uint32_t corner = map.corner_of_point(of_sheet[0]);
+    const double off = std::abs(corners[corner].y() - right->points[of_sheet[0]].y());
+    if (with_ends) {
+      EXPECT_LT(off, 0.01);
+    } else {
+      EXPECT_GT(off, 0.03);
+    }
   }
 }
 
@@ -186,6 +243,30 @@ TEST(MovedParts, FindsTheChairWhereItStandsNow) {
     EXPECT_LT((edge.a - Eigen::Vector3d(2.4, 2.0, 0.225)).cwiseAbs().maxCoeff(), 0.26);
   }
   EXPECT_EQ(map.corners(), before);
+}
+
+// What does not reach the floor in the map, as a chair whose legs are not in it, may have been measured too high or too low.
+TEST(MovedParts, FindsWhatWasMeasuredAtAnotherHeightToo) {
+  const auto truth = parse_obj(testing::chair_as_obj(), "room");
+  ASSERT_TRUE(truth);
+  auto points = truth->points;
+  for (const auto& face : truth->faces) {
+    if (truth->parts[face.part] != "chair") continue;
+    for (const std::uint32_t corner : face.corners) {
+      points[corner] = truth->points[corner] + Eigen::Vector3d(0.4, 0.3, 0.07);
+    }
+  }
+  const std::string text = obj_text(*truth, points, {});
+  const auto file = parse_obj(text, "room");
+  ASSERT_TRUE(file);
+  ElasticMap map = elastic(*file, text);
+  auto views = views_of(testing::chair_as_obj(), 0.2, 0.0, 60, 3);
+  refine(map, views, small_camera(), {});
+
+  const auto moved = find_moved_parts(map, views, small_camera(), {});
+
+  ASSERT_EQ(moved.size(), 1U);
+  EXPECT_LT((moved[0].shift - Eigen::Vector3d(-0.4, -0.3, -0.07)).norm(), 0.03);
 }
 
 TEST(MovedParts, FindsNoneWhereTheMapIsRight) {
