@@ -15,6 +15,7 @@
 namespace cgsr::mapping {
 namespace {
 
+constexpr double kOnFloor_m = 0.02;
 constexpr double kSame_m = 2e-4;             // what the loader makes one corner
 constexpr std::size_t kLargestOutline = 64;  // of a face whose corners are all tied to each other
 
@@ -196,6 +197,11 @@ void ElasticMap::find_contacts(const RefineParameters& parameters) {
       contacts_.push_back({i, on, weights, normal});
     }
   }
+}
+
+bool ElasticMap::stands_on_floor(std::uint32_t part) const {
+  return std::ranges::any_of(parts_[part].corners,
+                             [this](std::uint32_t corner) { return measured_[corner].z() < kOnFloor_m; });
 }
 
 std::array<std::uint32_t, 2> ElasticMap::ends_of(std::uint32_t edge) const {

@@ -48,6 +48,8 @@ class ElasticMap {
   }  ///< where the file has the corners, W [m].
   [[nodiscard]] const std::vector<Eigen::Vector3d>& corners() const { return corners_; }  ///< where they are now.
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  /// Whether a part, as it was measured, reaches the floor (z = 0).
+  [[nodiscard]] bool stands_on_floor(std::uint32_t part) const;
   [[nodiscard]] const std::vector<Tie>& ties() const { return ties_; }
   [[nodiscard]] const std::vector<Contact>& contacts() const { return contacts_; }
   /// Standard deviation of each corner on its own, such that all of a part's together leave the part N(0, map_sigma_m) [m].

@@ -20,9 +20,8 @@ constexpr double kLargest_m = 2.5;  // of a piece of furniture
 constexpr double kReach_m = 0.8;    // along the floor
 constexpr double kStep_m = 0.04;
 constexpr double kLevel_m = 0.05;       // up and down, of what does not stand on the floor
-constexpr double kUp_sigmas = 2.0;      // of its height
-constexpr double kBeside_sigmas = 2.6;  // nearer it is where the map has it
-constexpr double kStands_m = 0.02;      // above the floor
+constexpr double kUp_sigmas = 2.0;      // of a part's place: how far up and down it may be from where it was measured
+constexpr double kBeside_sigmas = 2.6;  // nearer along the floor it was only measured wrongly
 constexpr double kFineStep_m = 0.01;
 constexpr int kFineSteps = 6;
 constexpr double kFarthest_m = 5.0;
@@ -38,8 +37,7 @@ constexpr double kClearly = 1.8;        // and so many times what is found where
 constexpr double kExpected_px = 400.0;  // at least, there
 constexpr int kFewestImages = 5;
 constexpr double kSeen_images = 3.0;  // that show it there, counted by the share that is found
-constexpr double kNotOwn = 0.5;       // of a perceived edge that another part explains, that counts
-constexpr float kOwned_px = 3.0F;     // off an edge of the map, at most, what that explains
+constexpr int kFewestOfEdge = 3;      // images that show an edge that is proposed
 constexpr double kShown = 0.4;        // of a stretch in an image, from which on that shows it
 constexpr double kShortest_m = 0.08;  // of an edge that is proposed
 constexpr std::size_t kTried = 10;    // best places of the grid that are looked at closely
@@ -66,7 +64,9 @@ class Finder {
  public:
   Finder(const ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
          const RefineParameters& refined_with)
-      : views_(views), camera_(camera), owners_(owners_of(map, observe(map, views, camera, refined_with, kOwned_px))) {}
+      : views_(views),
+        camera_(camera),
+        owners_(owners_of(map, observe(map, views, camera, refined_with, kExplained_px))) {}
 
   /// Whose edges are looked for from now on.
   void look_for(std::uint32_t part) { part_ = part; }
@@ -137,7 +137,7 @@ class Finder {
       const float off_px = offset.dot(edge.normal());
       const float off = off_px / sharpness_px;
       const std::int64_t owner = owners_[view][i];
-      const double share = owner >= 0 && owner != part_ ? kNotOwn : 1.0;
+      const double share = owner >= 0 && owner != part_ ? kOthersShare : 1.0;
       const double counted = share * static_cast<double>(overlap / (1.0F + off * off));
       if (counted > best.overlap_px) best = {counted, static_cast<double>(off_px)};
     }
@@ -199,18 +199,25 @@ struct Place {
   double share;
 };
 
-/// Places of the grid, the best ones first, a step and a half apart at least.
+/// How far from where it was measured a part is looked for.
+struct Reach {
+  double least_m;  ///< along the floor.
+  double up_m;     ///< up and down; 0: it stands on the floor.
+  [[nodiscard]] bool holds(const Vector3d& d) const { return d.head<2>().norm() >= least_m && std::abs(d.z()) <= up_m; }
+};
+
+/// Places of the grid, the best ones first, two and a half steps apart at least.
 std::vector<Place> best_places(const Finder& finder, const std::vector<Stretch>& edges, const Vector3d& middle,
-                               double least_m, double up_m) {
+                               const Reach& within) {
   std::vector<Place> places;
   const int reach = static_cast<int>(kReach_m / kStep_m);
-  const int levels = static_cast<int>(std::lround(up_m / kLevel_m));
+  const int levels = static_cast<int>(std::lround(within.up_m / kLevel_m));
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
-      const double along_floor = kStep_m * std::hypot(x, y);
-      if (along_floor < least_m || along_floor > kReach_m) continue;
+      if (kStep_m * std::hypot(x, y) > kReach_m) continue;
       for (int z = -levels; z <= levels; ++z) {
         const Vector3d d(x * kStep_m, y * kStep_m, z * kLevel_m);
+        if (!within.holds(d)) continue;
         const Share share = finder.share_of(edges, middle, d);
         if (share.expected_px >= kExpected_px) places.push_back({d, share.value()});
       }
@@ -227,6 +234,19 @@ std::vector<Place> best_places(const Finder& finder, const std::vector<Stretch>&
   return apart;
 }
 
+Eigen::AlignedBox3d box_of(const ElasticMap& map, std::uint32_t part) {
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t corner : map.parts()[part].corners) box.extend(map.corners()[corner]);
+  return box;
+}
+
+/// What fits badly was pulled out of shape and off its height by what it was taken for.
+void put_where_measured(ElasticMap& map, std::uint32_t part) {
+  auto corners = map.corners();
+  for (const std::uint32_t corner : map.parts()[part].corners) corners[corner] = map.measured()[corner];
+  map.move(corners);
+}
+
 void move_part(ElasticMap& map, std::uint32_t part, const Vector3d& d) {
   auto corners = map.corners();
   for (const std::uint32_t corner : map.parts()[part].corners) corners[corner] += d;
@@ -234,7 +254,7 @@ void move_part(ElasticMap& map, std::uint32_t part, const Vector3d& d) {
 }
 
 /// With what hides it there, and more exactly.
-std::optional<MovedPart> look_closely(ElasticMap& map, std::uint32_t part, const Vector3d& d, bool stands,
+std::optional<MovedPart> look_closely(ElasticMap& map, std::uint32_t part, const Vector3d& d, const Reach& within,
                                       const Finder& finder, std::span<const View> views, const geometry::Camera& camera,
                                       const RefineParameters& parameters) {
   move_part(map, part, d);
@@ -242,11 +262,12 @@ std::optional<MovedPart> look_closely(ElasticMap& map, std::uint32_t part, const
   move_part(map, part, -d);
   MovedPart best;
   const auto try_at = [&](const Vector3d& fine) {
+    if (!within.holds(d + fine)) return;
     const Share share = share_of(finder, stretches, fine);
     if (share.expected_px < kExpected_px || share.images < kFewestImages || share.value() <= best.share_there) return;
     best = {part, d + fine, 0.0, share.value(), share.images, {}};
   };
-  const int levels = stands ? 0 : kFineSteps;
+  const int levels = within.up_m > 0.0 ? kFineSteps : 0;
   for (int z = -levels; z <= levels; ++z) try_at({0.0, 0.0, z * kFineStep_m});
   const double level = best.images > 0 ? best.shift.z() - d.z() : 0.0;
   for (int x = -kFineSteps; x <= kFineSteps; ++x) {
@@ -288,7 +309,7 @@ std::vector<Proposal> edges_there(ElasticMap& map, const MovedPart& moved, const
     proposal.b = map.corners()[b];
     proposal.rms_px = std::sqrt(proposal.rms_px / proposal.images);
     proposal.part = map.parts()[moved.part].name;
-    if (proposal.images >= kFewestImages / 2 && (proposal.b - proposal.a).norm() >= kShortest_m) {
+    if (proposal.images >= kFewestOfEdge && (proposal.b - proposal.a).norm() >= kShortest_m) {
       proposals.push_back(proposal);
     }
   }
@@ -296,24 +317,16 @@ std::vector<Proposal> edges_there(ElasticMap& map, const MovedPart& moved, const
   return proposals;
 }
 
-/// Where a part fits best beside its place, as it was measured: what fits badly was pulled out of shape by what it was taken for.
+/// Where a part, which is where it was measured, fits best beside that.
 std::optional<MovedPart> best_place(ElasticMap& map, std::uint32_t part, const Finder& finder,
                                     std::span<const View> views, const geometry::Camera& camera,
                                     const RefineParameters& refined_with) {
-  auto corners = map.corners();
-  Eigen::AlignedBox3d box;
-  for (const std::uint32_t corner : map.parts()[part].corners) {
-    corners[corner] = map.measured()[corner];
-    box.extend(corners[corner]);
-  }
-  map.move(corners);
-  const bool stands = box.min().z() < kStands_m;
-  const double up_m = stands ? 0.0 : kUp_sigmas * refined_with.map_sigma_m;
+  const double sigma_m = refined_with.map_sigma_m;
+  const Reach within{kBeside_sigmas * sigma_m, map.stands_on_floor(part) ? 0.0 : kUp_sigmas * sigma_m};
   std::optional<MovedPart> best;
-  for (const Place& place :
-       best_places(finder, edges_of(map, part), box.center(), kBeside_sigmas * refined_with.map_sigma_m, up_m)) {
-    auto closer = look_closely(map, part, place.d, stands, finder, views, camera, refined_with);
-    if (closer) closer = look_closely(map, part, closer->shift, stands, finder, views, camera, refined_with);
+  for (const Place& place : best_places(finder, edges_of(map, part), box_of(map, part).center(), within)) {
+    auto closer = look_closely(map, part, place.d, within, finder, views, camera, refined_with);
+    if (closer) closer = look_closely(map, part, closer->shift, within, finder, views, camera, refined_with);
     if (closer && (!best || closer->share_there > best->share_there)) best = closer;
   }
   return best;
@@ -327,12 +340,11 @@ std::vector<MovedPart> find_moved_parts(ElasticMap& map, std::span<const View> v
   const auto at_rest = map.corners();
   std::vector<MovedPart> moved;
   for (std::uint32_t part = 0; part < map.parts().size(); ++part) {
-    Eigen::AlignedBox3d box;
-    for (const std::uint32_t corner : map.parts()[part].corners) box.extend(map.corners()[corner]);
-    if (box.sizes().maxCoeff() > kLargest_m) continue;
+    if (box_of(map, part).sizes().maxCoeff() > kLargest_m) continue;
     finder.look_for(part);
     const Share here = share_of(finder, visible_of(map, part, finder, views, camera, refined_with), Vector3d::Zero());
     if (here.expected_px < kExpected_px || here.value() > kFitsHere) continue;
+    put_where_measured(map, part);
     auto best = best_place(map, part, finder, views, camera, refined_with);
     if (best && best->share_there >= std::max(kFitsThere, kClearly * here.value()) &&
         best->share_there * best->images >= kSeen_images) {

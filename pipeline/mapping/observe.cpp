@@ -18,8 +18,7 @@ constexpr float kTelling_px = 20.0F;       // a shorter piece may well go unseen
 constexpr double kRivalShare = 0.3;        // of the distance to another line that it could be
 constexpr std::size_t kMostPerceived = localization::SegmentTable::kBins * 20;
 
-constexpr double kAtCorner = 0.005;  // of an edge's length, from its end
-constexpr float kBorder_px = 3.0F;   // nearer to the image's border a line is cut off by it
+constexpr float kBorder_px = 3.0F;  // nearer to the image's border a line is cut off by it
 
 constexpr std::array<float, 2> kSide{-1.0F, 1.0F};  // of a piece's middle, on which an end of it lies
 
@@ -104,13 +103,12 @@ class Observer {
                                                   const localization::ProjectedPiece& piece, float side,
                                                   const localization::PerceivedEdge& line) const {
     const std::uint32_t edge = expected.pieces()[piece.piece].edge;
-    const double place = place_on(edge, expected.point_at(piece, side * piece.half_length));
-    if (place > kAtCorner && place < 1.0 - kAtCorner) return std::nullopt;
+    if (!(side < 0.0F ? expected.ends_at_first(piece) : expected.ends_at_last(piece))) return std::nullopt;
     const float alike = line.direction.dot(piece.direction) < 0.0F ? -1.0F : 1.0F;
     const Eigen::Vector2f end = line.middle + alike * side * line.half_length * line.direction;
     const Eigen::Array2f last(static_cast<float>(camera_.width_px - 1), static_cast<float>(camera_.height_px - 1));
     if ((end.array() < kBorder_px).any() || (end.array() > last - kBorder_px).any()) return std::nullopt;
-    return EndMatch{index, map_->ends_of(edge).at(place > 0.5 ? 1 : 0), piece.direction.cast<double>(),
+    return EndMatch{index, map_->ends_of(edge).at(side < 0.0F ? 0 : 1), piece.direction.cast<double>(),
                     double{piece.direction.dot(end)}, double{line.weight} * double{piece.weight}};
   }
 

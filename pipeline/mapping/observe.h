@@ -14,6 +14,11 @@ namespace cgsr::mapping {
 /// Of every view's perceived edges the part of the map whose edge it is, by index; -1: none's.
 using Owners = std::vector<std::vector<std::int64_t>>;
 
+/// How far off an edge of the map, at most, a perceived edge lies that this surely explains, once the poses have settled.
+inline constexpr float kExplained_px = 3.0F;
+/// How much of a perceived edge that another part explains counts for a part that is looked for.
+inline constexpr double kOthersShare = 0.5;
+
 /// What all images together say of the map as it is.
 struct Observed {
   std::vector<LineMatch> matches;

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "pipeline/localization/expected.h"
 #include "pipeline/mapping/map_view.h"
@@ -19,12 +17,10 @@ constexpr double kFineStep_m = 0.006;
 constexpr int kFineSteps = 3;
 constexpr double kPriorShare = 0.008;  // of what is expected, that a place one sigma from the measured one costs
 constexpr double kClearly = 0.015;     // of what is expected, that another place must find more
-constexpr double kOthersShare = 0.5;   // of a perceived edge that another part explains, that counts
 constexpr float kAngle_rad = 0.15F;
 constexpr double kLongest_px = 60.0;  // of an edge, that counts
 constexpr double kNearest_m = 0.1;
 constexpr std::size_t kFewest = 6;  // pieces seen
-constexpr double kOnFloor_m = 0.02;
 
 /// A stretch of an edge that an image should show.
 struct Stretch {
@@ -44,12 +40,12 @@ Eigen::Vector3d mean_move(const ElasticMap& map, const Part& part) {
 class PartSearch {
  public:
   PartSearch(const ElasticMap& map, std::span<const View> views, const geometry::Camera& camera,
-             const RefineParameters& parameters, Owners owners, double sharpness_px)
+             const RefineParameters& parameters, const Owners& owners, double sharpness_px)
       : views_(views),
         camera_(camera),
         sigma_m_(parameters.map_sigma_m),
         sharpness_px_(sharpness_px),
-        owners_(std::move(owners)) {
+        owners_(&owners) {
     stretches_.resize(map.parts().size());
     for (const Part& part : map.parts()) moved_.push_back(mean_move(map, part));
     MapView shown(map, camera, parameters);
@@ -135,7 +131,7 @@ class PartSearch {
       for (int k = -2; k <= 2; ++k) {
         const int at = (bin + k + (side < 0 ? kBins / 2 : 0) + 2 * kBins) % kBins;
         for (std::size_t i = view.edges.first_of(at); i < view.edges.first_of(at + 1); ++i) {
-          const std::int64_t owner = owners_.empty() ? -1 : owners_[stretch.view][i];
+          const std::int64_t owner = owners_->empty() ? -1 : (*owners_)[stretch.view][i];
           const double share = owner >= 0 && owner != part ? kOthersShare : 1.0;
           best = std::max(best, share * common(view.edges.edges()[i], middle, along, 0.5F * length));
         }
@@ -161,20 +157,18 @@ class PartSearch {
   double sharpness_px_;
   std::vector<Eigen::Vector3d> moved_;
   std::vector<std::vector<Stretch>> stretches_;
-  Owners owners_;
+  const Owners* owners_;
 };
 
 }  // namespace
 
 std::vector<Eigen::Vector3d> search_parts(const ElasticMap& map, std::span<const View> views,
                                           const geometry::Camera& camera, const RefineParameters& parameters,
-                                          Owners owners, double sharpness_px) {
-  const PartSearch search(map, views, camera, parameters, std::move(owners), sharpness_px);
+                                          const Owners& owners, double sharpness_px) {
+  const PartSearch search(map, views, camera, parameters, owners, sharpness_px);
   std::vector<Eigen::Vector3d> shifts;
   for (std::uint32_t i = 0; i < map.parts().size(); ++i) {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t corner : map.parts()[i].corners) lowest = std::min(lowest, map.measured()[corner].z());
-    shifts.push_back(search.best(i, lowest < kOnFloor_m));
+    shifts.push_back(search.best(i, map.stands_on_floor(i)));
   }
   return shifts;
 }

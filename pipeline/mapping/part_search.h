@@ -22,6 +22,6 @@ namespace cgsr::mapping {
 /// \return for every part how far it is moved, W [m]; zero where nothing else fits clearly better.
 std::vector<Eigen::Vector3d> search_parts(const ElasticMap& map, std::span<const View> views,
                                           const geometry::Camera& camera, const RefineParameters& parameters,
-                                          Owners owners, double sharpness_px);
+                                          const Owners& owners, double sharpness_px);
 
 }  // namespace cgsr::mapping

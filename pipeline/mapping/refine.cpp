@@ -7,8 +7,7 @@
 namespace cgsr::mapping {
 namespace {
 
-constexpr float kExplained_px = 3.0F;  // off an edge of the map, at most, what that explains
-constexpr std::size_t kSettled = 2;    // rounds, after which poses are good enough to tell what explains what
+constexpr std::size_t kSettled = 2;  // rounds, after which poses are good enough to tell what explains what
 
 // Before each round: how far the poses are off then; 0: parts are not searched.
 constexpr std::array<double, 9> kSharpness_px{0.0, 5.0, 4.0, 3.5, 3.0, 2.5, 2.5, 2.0, 0.0};

@@ -36,11 +36,12 @@ struct LineMatch {
 
 /// The end of a perceived line, and the corner of the map at which the edge that it was matched with ends: how far along the line that is.
 struct EndMatch {
-  std::uint32_t view = 0;                                ///< index of the View.
-  std::uint32_t corner = 0;                              ///< of the ElasticMap.
-  Eigen::Vector2d direction = Eigen::Vector2d::UnitX();  ///< of the line, unit, pixels of the camera without lens.
-  double offset_px = 0.0;                                ///< of its end along that.
-  double weight = 1.0;                                   ///< how sure it is that the line is the edge's, 0..1.
+  std::uint32_t view = 0;    ///< index of the View.
+  std::uint32_t corner = 0;  ///< of the ElasticMap.
+  Eigen::Vector2d direction =
+      Eigen::Vector2d::UnitX();  ///< of the expected edge, unit, pixels of the camera without lens.
+  double offset_px = 0.0;        ///< of the line's end along that.
+  double weight = 1.0;           ///< how sure it is that the line is the edge's, 0..1.
 };
 
 /// How often a map's edge was to be seen, and was.

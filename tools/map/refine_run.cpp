@@ -191,8 +191,9 @@ void print(const nlohmann::ordered_json& json) {
                part["edges_not_seen"].get<int>());
   }
   for (const auto& part : json["moved_parts"]) {
-    fmt::print("{} seems to stand ({:.2f}, {:.2f}) m from where the map has it: its edges there are proposed\n",
-               part["name"].get<std::string>(), part["shift_m"][0].get<double>(), part["shift_m"][1].get<double>());
+    fmt::print("{} seems to be ({:.2f}, {:.2f}, {:.2f}) m from where it was measured: its edges there are proposed\n",
+               part["name"].get<std::string>(), part["shift_m"][0].get<double>(), part["shift_m"][1].get<double>(),
+               part["shift_m"][2].get<double>());
   }
   fmt::print("{} new edges proposed, nothing removed\n", json["proposals"].size());
 }
