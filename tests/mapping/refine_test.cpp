@@ -225,17 +225,21 @@ TEST(Propose, FindsNothingWhereTheMapIsWhole) {
   EXPECT_TRUE(propose_edges(map, views, small_camera(), {}, {}).empty());
 }
 
-// A chair that stands half a metre from where the map has it is found there, and its edges are proposed; the map keeps it where it was.
-TEST(MovedParts, FindsTheChairWhereItStandsNow) {
+// The room's map with its chair elsewhere.
+std::string with_chair_moved(const Eigen::Vector3d& by) {
   const auto truth = parse_obj(testing::chair_as_obj(), "room");
-  ASSERT_TRUE(truth);
+  if (!truth) return {};
   auto points = truth->points;
   for (const auto& face : truth->faces) {
     if (truth->parts[face.part] != "chair") continue;
-    for (const std::uint32_t corner : face.corners)
-      points[corner] = truth->points[corner] + Eigen::Vector3d(0.4, 0.3, 0);
+    for (const std::uint32_t corner : face.corners) points[corner] = truth->points[corner] + by;
   }
-  const std::string text = obj_text(*truth, points, {});
+  return obj_text(*truth, points, {});
+}
+
+// A chair that stands half a metre from where the map has it is found there, and its edges are proposed; the map keeps it where it was.
+TEST(MovedParts, FindsTheChairWhereItStandsNow) {
+  const std::string text = with_chair_moved({0.4, 0.3, 0.0});
   const auto file = parse_obj(text, "room");
   ASSERT_TRUE(file);
   ElasticMap map = elastic(*file, text);
@@ -261,16 +265,7 @@ TEST(MovedParts, FindsTheChairWhereItStandsNow) {
 
 // What does not reach the floor in the map, as a chair whose legs are not in it, may have been measured too high or too low.
 TEST(MovedParts, FindsWhatWasMeasuredAtAnotherHeightToo) {
-  const auto truth = parse_obj(testing::chair_as_obj(), "room");
-  ASSERT_TRUE(truth);
-  auto points = truth->points;
-  for (const auto& face : truth->faces) {
-    if (truth->parts[face.part] != "chair") continue;
-    for (const std::uint32_t corner : face.corners) {
-      points[corner] = truth->points[corner] + Eigen::Vector3d(0.4, 0.3, 0.07);
-    }
-  }
-  const std::string text = obj_text(*truth, points, {});
+  const std::string text = with_chair_moved({0.4, 0.3, 0.07});
   const auto file = parse_obj(text, "room");
   ASSERT_TRUE(file);
   ElasticMap map = elastic(*file, text);
