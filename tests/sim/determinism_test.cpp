@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -137,6 +138,127 @@ TEST(RenderReplay, AnImageDoesNotDependOnTheOneBefore) {
   used->draw(state_at(scene, 0.0), look_at({0, -2, 1.0}, {1.5, 0, 0.6}), image);
   used->draw(state_at(scene, 1.0), X_WC, image);
   EXPECT_EQ(fresh.rgb, image.rgb);
+}
+
+void add_crate(Scene& scene, double size_m, Path path) {
+  Figure crate;
+  crate.path = std::move(path);
+  scene.figures.push_back(crate);
+  Part part;
+  part.mesh = make_box({size_m, size_m, size_m});
+  part.material = matt(scene, Rgb(0.1F, 0.5F, 0.2F));
+  part.figure = static_cast<int>(scene.figures.size()) - 1;
+  scene.parts.push_back(part);
+}
+
+// Somebody who walks through shadows, a ball, a crate behind the camera whose shadow alone is seen, one that comes and goes; far away, where
+// pixels are wide, one before a wall, and nothing beside it.
+Scene moving_scene() {
+  Scene scene = busy_scene();
+  scene.ambient.corner_reach_m = 0.0;  // so many new renderers
+  scene.figures[1].path = *Path::make({{{2.6, 1.4, 0}}, {{2.0, -1.4, 0}, 0.8}}, 0.0, 2.0, true);
+  add_crate(scene, 0.5, *Path::make({{{-1.5, 0.8, 1.5}}, {{-1.5, -0.8, 1.5}, 0.5}}, 0.4, 2.0, true));
+  add_crate(scene, 0.4, Path::standing({1.4, 0.5, 0.8}, 3.0));
+  scene.figures.back().presence = {{0.0, false, 0}, {0.5, true, 0}, {1.3, false, 0}, {2.2, true, 0}};
+  add_crate(scene, 0.8, *Path::make({{{11, -4, 1}}, {{11, 2, 2}, 3.0}}, 0.0, 2.0, true));
+  add_lamp(scene, {-2.9, 0.1, 2.3}, 900);
+  scene.lamps.back().switch_name = "back";
+  scene.add_static("wall", make_box({0.2, 10, 6}), matt(scene, Rgb::Constant(0.6F)), pose_at({12, -4, 2}));
+  return scene;
+}
+
+// Every byte is what a new renderer draws.
+void expect_as_new(Renderer& renderer, const SceneState& state, const Pose& X_WC, int edge_samples) {
+  RadianceImage image;
+  renderer.draw(state, X_WC, image);
+  const auto fresh = renderer_for(renderer.scene(), renderer.camera(), edge_samples);
+  RadianceImage expected;
+  fresh->draw(state, X_WC, expected);
+  EXPECT_EQ(fresh->traced_share(), 1.0);
+  EXPECT_EQ(std::memcmp(image.rgb.data(), expected.rgb.data(), expected.rgb.size() * sizeof(float)), 0);
+  EXPECT_EQ(renderer.geometry().part, fresh->geometry().part);
+  EXPECT_EQ(renderer.geometry().polygon, fresh->geometry().polygon);
+  EXPECT_EQ(renderer.geometry().depth_m, fresh->geometry().depth_m);
+}
+
+// Tiles are kept from image to image where nothing can have changed.
+TEST(RenderReplay, KeptTilesAreWhatANewRendererDraws) {
+  const Scene scene = moving_scene();
+  for (const auto& [width, edge_samples] : {std::pair(64, 4), std::pair(96, 16)}) {
+    const auto renderer = renderer_for(scene, CameraModel().scaled_to(width, width * 3 / 4), edge_samples, 2);
+    double traced = 0.0;
+    for (int i = 0; i < 36; ++i) {
+      SCOPED_TRACE(testing::Message() << width << " pixels, image " << i);
+      const SceneState state = state_at(scene, 0.07 * (i - i / 9) + 0.4 * (i / 11), {{"back", i % 16 < 12}});
+      expect_as_new(*renderer, state, look_at({-0.8, i / 3 == 8 ? 0.1 : 0.0, 1.2}, {1.5, 0, 0.6}), edge_samples);
+      traced += renderer->traced_share() / 36;
+      renderer->move_to(state_at(scene, 5.0));  // asked about something else in between
+    }
+    EXPECT_LT(traced, 0.9);
+  }
+}
+
+// Crates large and small, near and far, at random; pixels and lamps are wide.
+TEST(RenderReplayProperty, KeptTilesAreWhatANewRendererDraws) {
+  auto random = Seeded(20261130);
+  const auto place = [&] {
+    const double x = random.uniform(-2, 12);
+    const double y = random.uniform(-3, 3);
+    return Eigen::Vector3d(x, y, random.uniform(0.1, 2));
+  };
+  Scene scene = dark_scene();
+  scene.ambient.illuminance_lux = Rgb::Constant(20);
+  scene.add_static("floor", make_rectangle(30, 12), matt(scene, Rgb::Constant(0.4F)));
+  for (int i = 0; i < 6; ++i) {
+    const double size_m = random.uniform(0.1, 0.8);
+    scene.add_static("box", make_box({size_m, size_m, 2 * size_m}), matt(scene, Rgb::Constant(0.3F)), pose_at(place()));
+  }
+  for (int i = 0; i < 6; ++i) add_crate(scene, 0.1 + 0.2 * i, Path::standing(place(), 0.0));
+  add_lamp(scene, {2, 1, 2.5}, 900, 0.6);
+  add_lamp(scene, {-3, 0, 2.5}, 900);
+  for (const int edge_samples : {1, 4, 16}) {
+    const auto renderer = renderer_for(scene, plain_camera(72, 50, 50), edge_samples);
+    SceneState state = state_at(scene, 0.0);
+    const std::vector<LampState> lamps = state.lamps;
+    Pose X_WC = look_at({-1, 0, 1.2}, {4, 0, 0.8});
+    for (int i = 0; i < 200; ++i) {
+      SCOPED_TRACE(testing::Message() << edge_samples << " samples, image " << i);
+      const auto figure = static_cast<std::size_t>(random.uniform(0, 6));
+      Pose& X_WJ = state.X_WJ[figure][0];
+      X_WJ = random.uniform(0, 1) < 0.5 ? pose_at(place(), random.uniform(-3, 3))
+                                        : X_WJ * pose_at({0.0, random.uniform(-0.3, 0.3), 0.0}, 0.1);
+      if (random.uniform(0, 1) < 0.2) state.presence[figure].present = !state.presence[figure].present;
+      if (i % 20 == 19) state.lamps[1].intensity_cd = lamps[1].intensity_cd - state.lamps[1].intensity_cd;
+      if (i % 50 == 49) X_WC = look_at({-1, random.uniform(-0.5, 0.5), 1.2}, {4, 0, 0.8});
+      expect_as_new(*renderer, state, X_WC, edge_samples);
+    }
+  }
+}
+
+// A pixel's further rays pass the board that all of its tile's first ones end on.
+TEST(RenderReplay, WhatOnlyRefinedPixelsSeeIsDrawnAnew) {
+  Scene scene = dark_scene();
+  scene.ambient.illuminance_lux = Rgb::Constant(100);
+  const CameraModel camera = plain_camera(32, 16, 32);  // two tiles
+  const double edge_m = 0.3 / 32;                       // left of the middle, as column 15's pixels are
+  scene.add_static("board", make_box({0.01, 2, 2}), matt(scene, Rgb::Constant(0.4F)), pose_at({1.005, 1 + edge_m, 0}));
+  add_crate(scene, 0.5, *Path::make({{{6, -2, 0}}, {{6, 2, 0}, 1.0}}, 0.0, 2.0, false));
+  const auto renderer = renderer_for(scene, camera, 4);
+  for (int i = 0; i < 40; ++i) expect_as_new(*renderer, state_at(scene, 0.1 * i), look_at({0, 0, 0}, {1, 0, 0}), 4);
+}
+
+// What stands still is traced once; the light of the image may be changed by whoever asked for it.
+TEST(RenderReplay, AStillSceneIsTracedOnce) {
+  const Scene scene = busy_scene();
+  const auto renderer = renderer_for(scene, CameraModel().scaled_to(80, 60), 4);
+  const Pose X_WC = look_at({-0.8, 0, 1.2}, {1.5, 0, 0.6});
+  RadianceImage first;
+  renderer->draw(state_at(scene, 1.0), X_WC, first);
+  RadianceImage image = first;
+  for (float& value : image.rgb) value *= 0.5F;
+  renderer->draw(state_at(scene, 1.0), X_WC, image);
+  EXPECT_EQ(renderer->traced_share(), 0.0);
+  EXPECT_EQ(image.rgb, first.rgb);
 }
 
 TEST(Workers, DoEveryJobOnceHoweverManyThereAre) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,7 +57,8 @@ Renderer::Renderer(const Scene& scene, const CameraModel& camera, const RenderOp
       rays_(camera),
       tracer_(std::move(tracer)),
       surfaces_(scene),
-      shader_(scene, *tracer_, surfaces_) {
+      shader_(scene, *tracer_, surfaces_),
+      changes_(scene) {
   if (scene.ambient.corner_reach_m > 0.0)
     OpenBaker(scene_, *tracer_, surfaces_).bake(scene.ambient.corner_reach_m, workers_);
   const auto pixels = static_cast<std::size_t>(camera.width_px) * static_cast<std::size_t>(camera.height_px);
@@ -65,36 +67,59 @@ Renderer::Renderer(const Scene& scene, const CameraModel& camera, const RenderOp
   geometry_.part.resize(pixels);
   geometry_.polygon.resize(pixels);
   geometry_.depth_m.resize(pixels);
+  first_.resize(3 * pixels);
   brightness_.resize(pixels);
-  tiles_across_ = (camera.width_px + kTile - 1) / kTile;
-  tiles_ = tiles_across_ * ((camera.height_px + kTile - 1) / kTile);
+  refined_.resize(3 * pixels);
+  make_tiles();
+}
+
+void Renderer::make_tiles() {
+  tiles_across_ = (camera_.width_px + kTile - 1) / kTile;
+  for (int top = 0; top < camera_.height_px; top += kTile) {
+    for (int left = 0; left < camera_.width_px; left += kTile) {
+      Tile tile;
+      tile.left = left;
+      tile.top = top;
+      tile.right = std::min(left + kTile, camera_.width_px);
+      tile.bottom = std::min(top + kTile, camera_.height_px);
+      tiles_.push_back(std::move(tile));
+    }
+  }
 }
 
 void Renderer::draw(const SceneState& state, const Pose& X_WC, RadianceImage& image) {
   tracer_->update(state);
   shader_.set_state(state);
+  changes_.update(state, *tracer_, X_WC);
+  const auto count = static_cast<int>(tiles_.size());
+  workers_.run(count, [&](int index) {
+    Tile& tile = tiles_[static_cast<std::size_t>(index)];
+    tile.redrawn = changes_.affects(tile.first) || changes_.affects(tile.refined);
+    if (tile.redrawn) first_pass(tile, X_WC);
+  });
+  if (options_.edge_samples > 1) workers_.run(count, [&](int index) { edge_pass(index, X_WC); });
   image.width_px = camera_.width_px;
   image.height_px = camera_.height_px;
-  image.rgb.resize(brightness_.size() * 3);
-  workers_.run(tiles_, [&](int tile) { first_pass(tile, X_WC, image); });
-  if (options_.edge_samples > 1) workers_.run(tiles_, [&](int tile) { edge_pass(tile, X_WC, image); });
+  image.rgb = options_.edge_samples > 1 ? refined_ : first_;
 }
 
-void Renderer::first_pass(int tile, const Pose& X_WC, RadianceImage& image) {
+double Renderer::traced_share() const {
+  const auto traced = std::count_if(tiles_.begin(), tiles_.end(), [](const Tile& tile) { return tile.redrawn; });
+  return static_cast<double>(traced) / static_cast<double>(tiles_.size());
+}
+
+void Renderer::first_pass(Tile& tile, const Pose& X_WC) {
   const Eigen::Matrix3f R = X_WC.linear().cast<float>();
-  const int left = tile % tiles_across_ * kTile;
-  const int top = tile / tiles_across_ * kTile;
-  const int right = std::min(left + kTile, camera_.width_px);
-  const int bottom = std::min(top + kTile, camera_.height_px);
   Bundle bundle;
   bundle.origin = X_WC.translation().cast<float>();
   bundle.width = static_cast<float>(1.0 / camera_.fx_px);
   std::array<std::size_t, kPacket> pixel{};
-  for (int y = top; y < bottom; y += 2) {
-    for (int x = left; x < right; x += 4) {
+  tile.first = {};
+  for (int y = tile.top; y < tile.bottom; y += 2) {
+    for (int x = tile.left; x < tile.right; x += 4) {
       bundle.count = 0;
-      for (int row = y; row < std::min(y + 2, bottom); ++row) {
-        for (int column = x; column < std::min(x + 4, right); ++column) {
+      for (int row = y; row < std::min(y + 2, tile.bottom); ++row) {
+        for (int column = x; column < std::min(x + 4, tile.right); ++column) {
           const auto lane = static_cast<std::size_t>(bundle.count++);
           pixel[lane] = static_cast<std::size_t>(row) * static_cast<std::size_t>(camera_.width_px) +
                         static_cast<std::size_t>(column);
@@ -110,7 +135,8 @@ void Renderer::first_pass(int tile, const Pose& X_WC, RadianceImage& image) {
         geometry_.polygon[at] = surfel.polygon;
         geometry_.depth_m[at] = surfel.depth_m;
         brightness_[at] = bundle.radiance[lane].sum();
-        Eigen::Map<Rgb>(&image.rgb[at * 3]) = bundle.radiance[lane];
+        Eigen::Map<Rgb>{&first_[at * 3]} = bundle.radiance[lane];
+        tile.first.extend({bundle.origin, bundle.direction[lane], bundle.width}, surfel);
       }
     }
   }
@@ -132,35 +158,60 @@ bool Renderer::is_edge(int x, int y) const {
          (y > 0 && differ(at, at - width)) || (y + 1 < camera_.height_px && differ(at, at + width));
 }
 
-void Renderer::edge_pass(int tile, const Pose& X_WC, RadianceImage& image) {
-  const int left = tile % tiles_across_ * kTile;
-  const int top = tile / tiles_across_ * kTile;
+bool Renderer::neighbor_redrawn(int index) const {
+  const auto at = static_cast<std::size_t>(index);
+  const auto across = static_cast<std::size_t>(tiles_across_);
+  const Tile& tile = tiles_[at];
+  return (tile.left > 0 && tiles_[at - 1].redrawn) || (tile.right < camera_.width_px && tiles_[at + 1].redrawn) ||
+         (tile.top > 0 && tiles_[at - across].redrawn) ||
+         (tile.bottom < camera_.height_px && tiles_[at + across].redrawn);
+}
+
+std::vector<int> Renderer::edges_of(const Tile& tile) const {
   std::vector<int> edges;
-  for (int y = top; y < std::min(top + kTile, camera_.height_px); ++y) {
-    for (int x = left; x < std::min(left + kTile, camera_.width_px); ++x) {
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    for (int x = tile.left; x < tile.right; ++x) {
       if (is_edge(x, y)) edges.push_back(y * camera_.width_px + x);
     }
   }
-  refine(edges, X_WC, image);
+  return edges;
 }
 
-// Draws the pixels again with several rays each: two pixels of four rays to a packet, or half a pixel of sixteen.
-void Renderer::refine(const std::vector<int>& pixels, const Pose& X_WC, RadianceImage& image) const {
+// Which pixels are at an edge is a matter of the neighbouring tiles, too. What a pixel becomes is a matter of all of its tile that are:
+// they share packets.
+void Renderer::edge_pass(int index, const Pose& X_WC) {
+  Tile& tile = tiles_[static_cast<std::size_t>(index)];
+  if (!tile.redrawn && !neighbor_redrawn(index)) return;
+  std::vector<int> edges = edges_of(tile);
+  if (!tile.redrawn && edges == tile.edges) return;
+  tile.edges = std::move(edges);
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    const auto row = 3 * static_cast<std::ptrdiff_t>(y) * camera_.width_px;
+    std::copy(first_.begin() + row + 3 * tile.left, first_.begin() + row + 3 * tile.right,
+              refined_.begin() + row + 3 * tile.left);
+  }
+  refine(tile, X_WC);
+}
+
+// Draws the edges again with several rays each: two pixels of four rays to a packet, or half a pixel of sixteen.
+void Renderer::refine(Tile& tile, const Pose& X_WC) {
   const Eigen::Matrix3f R = X_WC.linear().cast<float>();
   const int samples = options_.edge_samples;
   Bundle bundle;
   bundle.origin = X_WC.translation().cast<float>();
   bundle.width = static_cast<float>(1.0 / camera_.fx_px / std::sqrt(static_cast<double>(samples)));
   std::array<std::size_t, kPacket> pixel{};
+  tile.refined = {};
   const auto flush = [&] {
     shader_.shade(bundle, true);
     for (std::size_t lane = 0; lane < static_cast<std::size_t>(bundle.count); ++lane) {
-      Eigen::Map<Rgb>(&image.rgb[pixel[lane] * 3]) += bundle.radiance[lane] / static_cast<float>(samples);
+      Eigen::Map<Rgb>(&refined_[pixel[lane] * 3]) += bundle.radiance[lane] / static_cast<float>(samples);
+      tile.refined.extend({bundle.origin, bundle.direction[lane], bundle.width}, bundle.surfel[lane]);
     }
     bundle.count = 0;
   };
-  for (const int at : pixels) {
-    Eigen::Map<Rgb>(&image.rgb[static_cast<std::size_t>(at) * 3]).setZero();
+  for (const int at : tile.edges) {
+    Eigen::Map<Rgb>(&refined_[static_cast<std::size_t>(at) * 3]).setZero();
     for (int i = 0; i < samples; ++i) {
       const auto lane = static_cast<std::size_t>(bundle.count++);
       pixel[lane] = static_cast<std::size_t>(at);

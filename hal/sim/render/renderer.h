@@ -6,6 +6,7 @@
 
 #include "hal/sim/render/lens.h"
 #include "hal/sim/render/open_baker.h"
+#include "hal/sim/render/scene_changes.h"
 #include "hal/sim/render/shader.h"
 #include "hal/sim/render/surfaces.h"
 #include "hal/sim/render/tracer.h"
@@ -43,7 +44,7 @@ struct GeometryImage {
 
 /// Draws a scene through a lens into linear light. 16x16 tiles, packets of eight rays (4x2 pixels), first one ray a pixel, then more
 /// where part, face or brightness change. The result depends on scene, state, pose and camera alone: the same bytes on any number of
-/// threads.
+/// threads. A tile that nothing can have changed since the last image is not traced again.
 ///
 /// Threads: one caller at a time.
 class Renderer {
@@ -61,6 +62,9 @@ class Renderer {
   /// What the last draw() saw at each pixel's centre.
   [[nodiscard]] const GeometryImage& geometry() const { return geometry_; }
 
+  /// The share of tiles that the last draw() traced; the others are the image's before.
+  [[nodiscard]] double traced_share() const;
+
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const CameraModel& camera() const { return camera_; }
   [[nodiscard]] const RayTable& rays() const { return rays_; }
@@ -70,9 +74,23 @@ class Renderer {
  private:
   Renderer(const Scene& scene, const CameraModel& camera, const RenderOptions& options, std::unique_ptr<Tracer> tracer);
 
-  void first_pass(int tile, const Pose& X_WC, RadianceImage& image);
-  void edge_pass(int tile, const Pose& X_WC, RadianceImage& image);
-  void refine(const std::vector<int>& pixels, const Pose& X_WC, RadianceImage& image) const;
+  struct Tile {
+    int left;
+    int top;
+    int right;   // beyond the last
+    int bottom;  // beyond the last
+    RayBounds first;
+    RayBounds refined;
+    std::vector<int> edges;  // pixels that were refined
+    bool redrawn = false;
+  };
+
+  void make_tiles();
+  void first_pass(Tile& tile, const Pose& X_WC);
+  void edge_pass(int index, const Pose& X_WC);
+  void refine(Tile& tile, const Pose& X_WC);
+  [[nodiscard]] bool neighbor_redrawn(int index) const;
+  [[nodiscard]] std::vector<int> edges_of(const Tile& tile) const;
   [[nodiscard]] bool is_edge(int x, int y) const;
   [[nodiscard]] bool differ(std::size_t a, std::size_t b) const;
 
@@ -85,9 +103,12 @@ class Renderer {
   Surfaces surfaces_;
   Shader shader_;
   GeometryImage geometry_;
+  SceneChanges changes_;
+  std::vector<float> first_;       // radiance of the first pass
   std::vector<float> brightness_;  // of the first pass
+  std::vector<float> refined_;     // radiance with refined edges
   int tiles_across_ = 0;
-  int tiles_ = 0;
+  std::vector<Tile> tiles_;
 };
 
 }  // namespace cgsr::sim

@@ -73,7 +73,7 @@ void Shader::shade(Bundle& bundle, bool coherent) const {
     rays.ray.dir_y[lane] = d.y();
     rays.ray.dir_z[lane] = d.z();
     rays.ray.tnear[lane] = 0.01F;
-    rays.ray.tfar[lane] = 2000.0F;
+    rays.ray.tfar[lane] = kMaxDepth_m;
     rays.ray.mask[lane] = kSightRays;
     rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;

@@ -29,6 +29,9 @@ constexpr unsigned figure_rays(int figure) {
 /// Eight rays at a time, which is what the tracer is fastest with.
 inline constexpr int kPacket = 8;
 
+/// Rays of a camera see as far as this along its axis.
+inline constexpr float kMaxDepth_m = 2000.0F;
+
 /// What a ray met.
 struct Met {
   int part = -1;  ///< index into the scene's parts.
