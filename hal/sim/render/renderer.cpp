@@ -1,6 +1,7 @@
 #include "hal/sim/render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -151,13 +152,6 @@ bool Renderer::differ(std::size_t a, std::size_t b) const {
   return std::abs(brightness_[a] - brightness_[b]) > kJump * 0.5F * (sum + 2.0F * kDark_cd_m2);
 }
 
-bool Renderer::is_edge(int x, int y) const {
-  const auto width = static_cast<std::size_t>(camera_.width_px);
-  const std::size_t at = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-  return (x > 0 && differ(at, at - 1)) || (x + 1 < camera_.width_px && differ(at, at + 1)) ||
-         (y > 0 && differ(at, at - width)) || (y + 1 < camera_.height_px && differ(at, at + width));
-}
-
 bool Renderer::neighbor_redrawn(int index) const {
   const auto at = static_cast<std::size_t>(index);
   const auto across = static_cast<std::size_t>(tiles_across_);
@@ -168,10 +162,31 @@ bool Renderer::neighbor_redrawn(int index) const {
 }
 
 std::vector<int> Renderer::edges_of(const Tile& tile) const {
+  const int width = camera_.width_px;
+  std::array<bool, static_cast<std::size_t>(kTile * kTile)> edge{};
+  const auto mark = [&](int x, int y) {
+    if (x >= tile.left && x < tile.right && y >= tile.top && y < tile.bottom)
+      edge[static_cast<std::size_t>((y - tile.top) * kTile + x - tile.left)] = true;
+  };
+  const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * width + x); };
+  for (int y = tile.top; y < tile.bottom; ++y) {
+    for (int x = std::max(tile.left - 1, 0); x < std::min(tile.right, width - 1); ++x) {
+      if (!differ(at(x, y), at(x + 1, y))) continue;
+      mark(x, y);
+      mark(x + 1, y);
+    }
+  }
+  for (int y = std::max(tile.top - 1, 0); y < std::min(tile.bottom, camera_.height_px - 1); ++y) {
+    for (int x = tile.left; x < tile.right; ++x) {
+      if (!differ(at(x, y), at(x, y + 1))) continue;
+      mark(x, y);
+      mark(x, y + 1);
+    }
+  }
   std::vector<int> edges;
   for (int y = tile.top; y < tile.bottom; ++y) {
     for (int x = tile.left; x < tile.right; ++x) {
-      if (is_edge(x, y)) edges.push_back(y * camera_.width_px + x);
+      if (edge[static_cast<std::size_t>((y - tile.top) * kTile + x - tile.left)]) edges.push_back(y * width + x);
     }
   }
   return edges;

@@ -91,7 +91,6 @@ class Renderer {
   void refine(Tile& tile, const Pose& X_WC);
   [[nodiscard]] bool neighbor_redrawn(int index) const;
   [[nodiscard]] std::vector<int> edges_of(const Tile& tile) const;
-  [[nodiscard]] bool is_edge(int x, int y) const;
   [[nodiscard]] bool differ(std::size_t a, std::size_t b) const;
 
   const Scene& scene_;

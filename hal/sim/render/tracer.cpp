@@ -144,16 +144,19 @@ void Tracer::nearest(const int* valid, RTCRayHit8& rays, bool coherent) const {
 // Möller and Trumbore's intersection ("Fast, Minimum Storage Ray/Triangle Intersection", 1997), in double.
 void Tracer::measure(RTCRayHit8& rays, int lane) const {
   const Met hit = met(rays, lane);
-  const Mesh& mesh = scene_->parts[static_cast<std::size_t>(hit.part)].mesh;
+  const Part& part = scene_->parts[static_cast<std::size_t>(hit.part)];
+  const Mesh::Triangle& triangle = part.mesh.triangles[hit.triangle];
   const Placement& X = placement(hit.part);
-  const auto corner = [&](int i) -> Eigen::Vector3d {
-    const auto at = static_cast<std::size_t>(i);
-    return X.R.cast<double>() * mesh.position_m[mesh.triangles[hit.triangle].corner[at]].cast<double>() +
-           X.p.cast<double>();
-  };
-  const Eigen::Vector3d a = corner(0);
-  const Eigen::Vector3d ab = corner(1) - a;
-  const Eigen::Vector3d ac = corner(2) - a;
+  std::array<Eigen::Vector3d, 3> corner;
+  for (std::size_t i = 0; i < 3; ++i) corner[i] = part.mesh.position_m[triangle.corner[i]].cast<double>();
+  if (part.figure >= 0) {
+    const Eigen::Matrix3d R = X.R.cast<double>();
+    for (Eigen::Vector3d& p : corner) p = R * p;
+  }
+  const Eigen::Vector3d p_W = X.p.cast<double>();
+  const Eigen::Vector3d a = corner[0] + p_W;
+  const Eigen::Vector3d ab = corner[1] + p_W - a;
+  const Eigen::Vector3d ac = corner[2] + p_W - a;
   const Eigen::Vector3d direction(rays.ray.dir_x[lane], rays.ray.dir_y[lane], rays.ray.dir_z[lane]);
   const Eigen::Vector3d from_a = Eigen::Vector3d(rays.ray.org_x[lane], rays.ray.org_y[lane], rays.ray.org_z[lane]) - a;
   const Eigen::Vector3d across = direction.cross(ac);
