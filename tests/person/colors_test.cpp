@@ -162,6 +162,27 @@ TEST(PersonColors, FindAShirtUnderAnotherLight) {
   EXPECT_EQ(label_of(map, seen), 1);
 }
 
+// Codes that were found under a light before are used again, as long as nothing was learned since.
+TEST(PersonColors, MapALightThatComesBackAsItWas) {
+  PersonColors colors;
+  colors.learn(1, around(kRed, 1), around(kGrey, 2));
+  const std::vector bright{color::Light{0.9, 0.9, 0.9}}, dim{color::Light{0.5, 0.5, 0.5}};
+  const auto map_of = [&colors](const std::vector<color::Light>& lights) {
+    imaging::LabelTable map;
+    colors.make_map(lights, map);
+    return map;
+  };
+  const auto in_bright = map_of(bright), in_dim = map_of(dim);
+  ASSERT_NE(in_bright, in_dim);
+  EXPECT_EQ(map_of(bright), in_bright);
+  EXPECT_EQ(map_of(dim), in_dim);
+  EXPECT_EQ(map_of({{0.7, 0.7, 0.7}}).size(), in_dim.size()) << "a third";
+  EXPECT_EQ(map_of(bright), in_bright);
+  colors.add(1, around(kGreen, 3), {});
+  EXPECT_NE(map_of(bright), in_bright);
+  EXPECT_NE(map_of(dim), in_dim) << "what was learned counts under both";
+}
+
 TEST(PersonColors, KeepSoManyPeopleAndForgetByNumber) {
   PersonColorParameters parameters;
   parameters.max_people = 3;

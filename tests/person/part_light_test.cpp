@@ -84,6 +84,22 @@ TEST(PartLight, FollowsASlowChangeWhileTheShirtIsFound) {
   EXPECT_FALSE(light.found(1, {in_light(0.4, 0.4, 1.0).part, in_light(0.6, 0.6, 1.0).beside})) << "a print";
 }
 
+// A shirt that was followed into a lamp's light, and is gone for long.
+TEST(PartLight, IsThatOfLearningInTurnsAfterALongLoss) {
+  PartLight light = learned();
+  EXPECT_FALSE(light.turn(1)) << "it has not changed";
+  ASSERT_TRUE(light.found(1, in_light(0.6, 0.6, 0.6)));
+  for (const double expected : {0.8, 0.48, 0.8}) {
+    ASSERT_TRUE(light.turn(1));
+    EXPECT_NEAR(light.of(1)->r, expected, 1e-9);
+  }
+  EXPECT_FALSE(light.found(1, in_light(1.0, 1.0, 1.0))) << "where it was found it is that one";
+  EXPECT_FALSE(light.turn(1)) << "of learning";
+  ASSERT_TRUE(light.suppose(1, in_light(0.6, 0.6, 0.6)));
+  EXPECT_NEAR(light.of(1)->r, 0.48, 1e-9) << "a change from there";
+  EXPECT_FALSE(light.turn(2)) << "nobody";
+}
+
 TEST(MeanColor, IsOfThePixelsThatAreNeitherDarkNorWhite) {
   Picture picture;
   picture.fill(kShirtBox, kRed);

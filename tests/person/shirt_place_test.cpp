@@ -127,6 +127,29 @@ TEST(ShirtPlace, IsOfAnotherSizeAfterALoss) {
   EXPECT_EQ(tracker.update({beside.view()}).person, 1);
 }
 
+// Somebody walks away from the lamp, is out of sight, and comes back where his shirt was learned.
+TEST(ShirtPlace, IsFoundInTheLightOfLearningAfterALongLoss) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  const auto in_light = [](double gain) {
+    Picture picture{{gain * kWall.r, gain * kWall.g, gain * kWall.b}};
+    picture.fill(kShirtBox, {gain * kRed.r, gain * kRed.g, gain * kRed.b});
+    return picture;
+  };
+  for (const double gain : {1.0, 0.75, 0.55})
+    for (int image = 0; image < 10; ++image) tracker.update({in_light(gain).view()});
+  ASSERT_EQ(tracker.update({in_light(0.55).view()}).person, 1);
+  ASSERT_LT(tracker.shirts().light_of(1)->r, 0.6) << "that of where it was last";
+  for (int image = 0; image < 60; ++image) ASSERT_EQ(tracker.update({Picture{}.view()}).person, std::nullopt) << image;
+  std::optional<int> found_after;
+  for (int image = 0; image < 30 && !found_after; ++image)
+    if (tracker.update({standing(kRed).view()}).person == 1) found_after = image;
+  ASSERT_TRUE(found_after);
+  EXPECT_LE(*found_after, 4);
+}
+
 // A jacket of the colour of the road behind it, and a red shirt below it.
 TEST(ShirtPlace, HasNotTheColoursThatAreBesideTheTrunk) {
   PersonTrackerParameters parameters;

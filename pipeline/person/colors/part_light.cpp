@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace cgsr::person {
 namespace {
@@ -69,8 +70,9 @@ std::optional<color::Light> PartLight::light_by(const Part& part, const PartColo
 bool PartLight::found(Label person, const PartColors& colors) {
   Part* part = find(person);
   if (part == nullptr) return false;
-  if (!part->colors || part->before) part->colors = colors;
+  if (!part->colors || part->before || part->other) part->colors = colors;
   part->before.reset();
+  part->other.reset();
   if (const auto light = light_by(*part, colors)) {
     part->used = *light;
     part->colors = colors;
@@ -96,6 +98,15 @@ void PartLight::take_back(Label person) {
   if (part == nullptr || !part->before) return;
   part->used = *part->before;
   part->before.reset();
+}
+
+bool PartLight::turn(Label person) {
+  Part* part = find(person);
+  if (part == nullptr || (!part->other && !differs(part->assumed, part->used, parameters_.min_change / 2)))
+    return false;
+  if (!part->other) part->other = part->assumed;
+  std::swap(part->used, *part->other);
+  return true;
 }
 
 std::optional<color::Light> PartLight::of(Label person) const {

@@ -61,6 +61,9 @@ class PartLight {
   bool suppose(Label person, const PartColors& now);
   /// What suppose() said was wrong.
   void take_back(Label person);
+  /// The part has been gone for long: whether the light at its last place, or that of learning, is on it where it comes back is open.
+  /// \return whether it is to be looked for under the other of the two, which of() tells; false where they are alike.
+  bool turn(Label person);
 
   /// \return nothing: not known.
   [[nodiscard]] std::optional<color::Light> of(Label person) const;
@@ -72,6 +75,7 @@ class PartLight {
     color::Light used{};                   // under which it is looked for
     std::optional<PartColors> colors{};    // under `used`
     std::optional<color::Light> before{};  // suppose(): what was used until then
+    std::optional<color::Light> other{};   // turn(): what is not in use now
   };
   Part* find(Label person);
   [[nodiscard]] std::optional<color::Light> light_by(const Part& part, const PartColors& now) const;

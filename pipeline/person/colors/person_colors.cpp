@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cgsr::person {
 namespace {
@@ -69,7 +70,7 @@ PersonColors::Person& PersonColors::room_for(Label person) {
 
 void PersonColors::put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
                        const color::Light& light) {
-  person.codes_light.reset();
+  for (Codes& codes : person.codes) codes.light.reset();
   person.positive.add(textures(positive, light));
   person.negative.add(textures(negative, light));
 }
@@ -130,9 +131,23 @@ std::vector<Label> PersonColors::order() const {
   return labels;
 }
 
-void PersonColors::find_codes(Person& person, const color::Light& light) const {
-  person.codes.clear();
-  person.codes_light = light;
+// A light that is taken back, or looked under in turns, costs nothing again.
+const std::vector<std::uint16_t>& PersonColors::codes_under(const color::Light& light, Person& person) const {
+  auto& [last, before] = person.codes;
+  const auto is_of = [&light](const Codes& codes) {
+    return codes.light && codes.light->r == light.r && codes.light->g == light.g && codes.light->b == light.b;
+  };
+  if (is_of(last)) return last.all;
+  std::swap(last, before);
+  if (is_of(last)) return last.all;
+  last.light = light;
+  find_codes(person, light, last.all);
+  return last.all;
+}
+
+void PersonColors::find_codes(const Person& person, const color::Light& light,
+                              std::vector<std::uint16_t>& codes) const {
+  codes.clear();
   const int reach = reach_under(light, person.light);
   const double min_share = parameters_.min_share * std::pow((2.0 * reach + 1.0) / 3.0, 3);  // by the colours looked at
   const std::vector<std::uint8_t> near = person.positive.met_nearby(reach);
@@ -143,7 +158,7 @@ void PersonColors::find_codes(Person& person, const color::Light& light) const {
     if (near[ColorHistogram::bin(texture)] == 0) continue;
     const double share = person.positive.share(texture, reach);
     if (share < min_share || share < parameters_.min_ratio * person.negative.share(texture, reach)) continue;
-    person.codes.push_back(static_cast<std::uint16_t>(code));
+    codes.push_back(static_cast<std::uint16_t>(code));
   }
 }
 
@@ -156,10 +171,7 @@ void PersonColors::make_map(std::span<const color::Light> lights, imaging::Label
   for (const std::size_t i : by_interest) {
     Person& one = people_[i];
     const color::Light& light = i < lights.size() ? lights[i] : one.light;
-    const bool same = one.codes_light && one.codes_light->r == light.r && one.codes_light->g == light.g &&
-                      one.codes_light->b == light.b;
-    if (!same) find_codes(one, light);
-    for (const std::uint16_t code : one.codes) map[code] = static_cast<std::uint16_t>(i + 1);
+    for (const std::uint16_t code : codes_under(light, one)) map[code] = static_cast<std::uint16_t>(i + 1);
   }
 }
 

@@ -67,24 +67,29 @@ class PersonColors {
 
   /// The RGB-to-person map, over the colour codes of an image: 0 is nobody, i + 1 is the person at place i of order().
   /// \param lights  the light of each person now, in the order of order(); missing ones: as it was at learning.
-  /// Cost: 4 million instructions for each person who was learned, or whose light changed, since the last one.
+  /// Cost: 4 million instructions for each person who was learned since the last one, or whose light is neither that of the last one nor that of the one before.
   void make_map(std::span<const color::Light> lights, imaging::LabelTable& map);
   /// The people by place.
   [[nodiscard]] std::vector<Label> order() const;
 
  private:
+  /// The colour codes that are a person's under a light; without one they are to be looked for again.
+  struct Codes {
+    std::optional<color::Light> light{};
+    std::vector<std::uint16_t> all;
+  };
   struct Person {
     Label label = 0;
     std::uint64_t interest = 0;  // larger: later
     color::Light light{1.0, 1.0, 1.0};
     ColorHistogram positive, negative;
-    std::vector<std::uint16_t> codes;           // those that are this person's
-    std::optional<color::Light> codes_light{};  // under which; nothing: they are to be looked for again
+    std::array<Codes, 2> codes;  // under the light of the last map first, and that of a map before it
   };
   Person* find(Label person);
   [[nodiscard]] const Person* find(Label person) const;
   Person& room_for(Label person);
-  void find_codes(Person& person, const color::Light& light) const;
+  [[nodiscard]] const std::vector<std::uint16_t>& codes_under(const color::Light& light, Person& person) const;
+  void find_codes(const Person& person, const color::Light& light, std::vector<std::uint16_t>& codes) const;
   static void put(Person& person, std::span<const imaging::Rgb> positive, std::span<const imaging::Rgb> negative,
                   const color::Light& light);
 

@@ -15,6 +15,7 @@ namespace {
 constexpr int kFactor = ColorLabels::kFactor;
 constexpr double kSamePlace = 0.4;  // intersection over union
 constexpr double kSameSize = 0.6;   // the same, where a blob is the trunk and little else
+constexpr int kLongLoss = 15;       // images
 
 Box in_camera(const Blob& blob, int left = 0, int top = 0) {
   return {(blob.box.x + left) * kFactor, (blob.box.y + top) * kFactor, blob.box.width * kFactor,
@@ -289,7 +290,6 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
 
 // After a loss its person may be nearer or farther away: how large the shirt was says nothing any longer. A light that changes loses it for a few images.
 void ShirtClassifier::found(const PersonImage& input, Label person) {
-  constexpr int kLongLoss = 15;  // images
   place_ = person == person_ && missed_ < kLongLoss ? settled(place_, box_) : box_;
   person_ = person;
   missed_ = since_trained_ = 0;
@@ -299,6 +299,7 @@ void ShirtClassifier::found(const PersonImage& input, Label person) {
 }
 
 // The light may have changed at once: then the place where the shirt was has, in the new light, the shirt's colours. This is supposed once for each loss.
+// After a long one the light of its last place may not be that of where it comes back: it is looked for under that of learning in turns.
 void ShirtClassifier::lost(const PersonImage& input) {
   if (!person_) return;
   if (supposed_ && !map_is_due_) {  // it was looked for in that light
@@ -306,7 +307,9 @@ void ShirtClassifier::lost(const PersonImage& input) {
     light_.take_back(*person_);
     map_is_due_ = true;
   }
-  if (++missed_ != 1) return;
+  constexpr int kTurn = 2;  // images; between them there is room for another map
+  if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && light_.turn(*person_)) map_is_due_ = true;
+  if (missed_ != 1) return;
   const auto now = colors_of(input.image, place_);
   if (!now || !light_.suppose(*person_, *now)) return;
   supposed_ = map_is_due_ = true;

@@ -53,7 +53,7 @@ struct ShirtParameters {
 
 /// The secondary characteristic: the person whose shirt's colours make the largest blob of plausible size (6.2.2); where the shirt of the person of
 /// interest is in view, that person, however large the others are; colours that several people wear are those of the latest person of interest. Where somebody's head is known, his shirt is below it and nowhere else. It is
-/// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt. From the
+/// looked for in the light that is on it (PartLight); when it is lost at once, once more in the light in which its place would be the shirt; after a long loss under the light of learning, in turns. From the
 /// last face or marker on it is followed at its place too (PartPlace): a blob that is elsewhere, or of another size, is not believed while it is there, and what
 /// it looks like there is added to its colours now and then, a bounded number of samples at a time, without what is more frequent beside it. Just after a loss
 /// a much smaller blob elsewhere is not believed.
