@@ -8,6 +8,7 @@ namespace cgsr::behavior {
 struct FillLightParameters {
   bool enabled = false;
   double min_dark = 0.1;
+  double max_waiting_luma = 0.25;
   double no_face_s = 1.0;
   double face_s = 3.0;
   double gone_s = 2.0;
@@ -23,6 +24,9 @@ struct FillLightParameters {
     visit.number("min_dark", self.min_dark, {0.0, 1.0}, "",
                  "The share of the pixels where the face should be that are too dark for a hue, from which on it is "
                  "dark; of the darkest generated face in good light it is 0.06.");
+    visit.number("max_waiting_luma", self.max_waiting_luma, {0.0, 1.0}, "",
+                 "The mean brightness of the middle of the image up to which it is dark where nobody is seen by "
+                 "anything and a face is waited for; of a hall of light walls in a tenth of good light it is 0.2.");
     visit.number("no_face_s", self.no_face_s, {0.1, 60.0}, "s",
                  "The time without a face in the dark after which the light goes on.");
     visit.number("face_s", self.face_s, {0.1, 60.0}, "s",

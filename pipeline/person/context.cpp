@@ -2,8 +2,33 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
 
 namespace cgsr::person {
+namespace {
+
+constexpr int kAcross = 16;
+using Spread = std::array<imaging::Rgb, std::size_t{kAcross} * kAcross>;
+
+// Pixels that are spread over what of the region is within the image. Nothing: none is.
+std::optional<Spread> spread_over(const ImageView& image, const Box& region) {
+  const Box part = intersection(region, {0, 0, double(image.width_px), double(image.height_px)});
+  if (image.empty() || image.format != PixelFormat::kYuyv || part.empty()) return std::nullopt;
+  Spread colors{};
+  for (int i = 0; i < kAcross; ++i) {
+    const auto y = std::min(image.height_px - 1, static_cast<int>(part.y + (i + 0.5) * part.height / kAcross));
+    for (int j = 0; j < kAcross; ++j) {
+      const auto x = std::min(image.width_px - 1, static_cast<int>(part.x + (j + 0.5) * part.width / kAcross));
+      const std::uint8_t* pair = image.row(y) + std::ptrdiff_t{4} * (x / 2);  // Y0 U Y1 V
+      colors[static_cast<std::size_t>(i * kAcross + j)] = imaging::rgb_of_yuv(pair[x % 2 * 2], pair[1], pair[3]);
+    }
+  }
+  return colors;
+}
+
+}  // namespace
 
 std::string_view to_string(Cue cue) {
   switch (cue) {
@@ -29,19 +54,41 @@ ImageContext context_of(std::span<const imaging::Rgb> colors) {
 }
 
 ImageContext context_of(const ImageView& image, const Box& region) {
-  constexpr int kSide = 16;
+  constexpr double kSharp = 0.75, kNoEdge = 0.95;  // of blur_of()
+  const auto colors = spread_over(image, region);
+  if (!colors) return {};
+  ImageContext context = context_of(*colors);
+  context.blurred = std::clamp((blur_of(image, region) - kSharp) / (kNoEdge - kSharp), 0.0, 1.0);
+  return context;
+}
+
+double mean_luma(const ImageView& image, const Box& region) {
+  const auto colors = spread_over(image, region);
+  if (!colors) return 1.0;
+  double sum = 0.0;
+  for (const imaging::Rgb& color : *colors) sum += imaging::yuv_of_rgb(color).y / 255.0;
+  return sum / static_cast<double>(colors->size());
+}
+
+double blur_of(const ImageView& image, const Box& region) {
+  constexpr int kRows = 16, kReach = 4, kMinWidth = 16;  // blurred over 2 kReach + 1 pixels
   const Box part = intersection(region, {0, 0, double(image.width_px), double(image.height_px)});
-  if (image.empty() || image.format != PixelFormat::kYuyv || part.empty()) return {};
-  std::array<imaging::Rgb, std::size_t{kSide} * kSide> colors{};
-  for (int i = 0; i < kSide; ++i) {
-    const auto y = std::min(image.height_px - 1, static_cast<int>(part.y + (i + 0.5) * part.height / kSide));
-    for (int j = 0; j < kSide; ++j) {
-      const auto x = std::min(image.width_px - 1, static_cast<int>(part.x + (j + 0.5) * part.width / kSide));
-      const std::uint8_t* pair = image.row(y) + std::ptrdiff_t{4} * (x / 2);  // Y0 U Y1 V
-      colors[static_cast<std::size_t>(i * kSide + j)] = imaging::rgb_of_yuv(pair[x % 2 * 2], pair[1], pair[3]);
+  const int left = static_cast<int>(part.x), right = static_cast<int>(part.x + part.width);
+  if (image.empty() || image.format != PixelFormat::kYuyv || right - left < kMinWidth) return 0.0;
+  std::int64_t differences = 0, lost = 0;  // of 2 kReach + 1 times the grey values
+  for (int i = 0; i < kRows; ++i) {
+    const auto y = std::min(image.height_px - 1, static_cast<int>(part.y + (i + 0.5) * part.height / kRows));
+    const std::uint8_t* const row = image.row(y);
+    const auto grey = [&](int x) { return int{row[std::ptrdiff_t{2} * std::clamp(x, left, right - 1)]}; };
+    for (int x = left + 1; x < right; ++x) {
+      const int sharp = (2 * kReach + 1) * std::abs(grey(x) - grey(x - 1));
+      const int blurred = std::abs(
+          grey(x + kReach) - grey(x - 1 - kReach));  // the difference of two sums that share all but one pixel each
+      differences += sharp;
+      lost += std::max(0, sharp - blurred);
     }
   }
-  return context_of(colors);
+  return differences > 0 ? 1.0 - static_cast<double>(lost) / static_cast<double>(differences) : 0.0;
 }
 
 double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters) {

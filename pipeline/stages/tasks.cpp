@@ -29,6 +29,11 @@ bool is_mostly_within(const Box& box, const ImageView& image) {
   return intersection(box, whole).area() > 0.5 * box.area();
 }
 
+/// Whoever stands before the robot has the face there.
+Box where_faces_are(const ImageView& image) {
+  return {image.width_px / 4.0, image.height_px / 8.0, image.width_px / 2.0, image.height_px / 2.0};
+}
+
 /// What the behaviour needs of the lamp. A report that is too old says no more than that there is a board.
 behavior::LampBelief lamp_belief(const runtime::Aged<LampReport>& aged, const runtime::Aged<ShadowMasks>& shade) {
   using illumination::ObservationStatus;
@@ -113,7 +118,13 @@ void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const Imag
   behavior::FaceEvidence evidence;
   if (people != nullptr) {
     evidence.seen = people->person.source == person::PersonSource::kFace;
-    if (const auto& face = people->expected_face) {
+    const bool nobody = people->person.source == person::PersonSource::kNone;
+    if (nobody) {  // waits for a face: of whom nothing is known yet the light may show it
+      evidence.seen = !people->seen_faces().empty();
+      evidence.lost = !evidence.seen;
+      evidence.expected = true;
+      evidence.dark = person::mean_luma(image, where_faces_are(image)) <= light_->max_waiting_luma() ? 1.0 : 0.0;
+    } else if (const auto& face = people->expected_face) {
       evidence.expected = is_mostly_within(*face, image);
       evidence.dark = person::context_of(image, *face).dark;
       for (const person::SeenFace& seen : people->seen_faces())

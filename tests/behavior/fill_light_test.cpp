@@ -15,6 +15,7 @@ constexpr FaceEvidence kFacelessInTheDark{true, false, 0.8};
 constexpr FaceEvidence kFacelessInTheLight{true, false, 0.05};
 constexpr FaceEvidence kFaceInTheDark{true, true, 0.8};
 constexpr FaceEvidence kFace{true, true, 0.0};
+constexpr FaceEvidence kLost{true, false, 0.8, true};
 
 /// So long there is this to be seen; at its end the light is on or off, by this reason if it changed in the meantime.
 struct Step {
@@ -30,7 +31,7 @@ struct Case {
 };
 
 const std::string kDark = "no face where one should be, and it is dark", kSeen = "a face was seen long enough",
-                  kLong = "it was on for long enough", kGone = "nobody is there";
+                  kLong = "it was on for long enough", kGone = "nobody is there", kNeeded = "nobody is seen without it";
 
 // As shipped: on after 1 s; off after 3 s with a face, 2 s with nobody, 10 s at most; 20 s of rest, 120 s where it showed no face.
 const std::vector<Case> kCases = {
@@ -56,6 +57,19 @@ const std::vector<Case> kCases = {
       {3.2, kFace, false, kSeen},
       {19.5, kFacelessInTheDark, false, ""},
       {1.0, kFacelessInTheDark, true, kDark}}},
+    {"it is held where nobody is seen without it",
+     {{1.1, kLost, true, kDark},
+      {3.2, kFace, false, kSeen},
+      {0.2, kLost, false, ""},
+      {0.2, kLost, true, kNeeded},
+      {9.0, kFace, true, ""},
+      {1.0, kFace, false, kLong},
+      {0.5, kLost, true, kNeeded}}},
+    {"it is not held for somebody who leaves later",
+     {{1.1, kLost, true, kDark},
+      {3.2, kFace, false, kSeen},
+      {5.0, kFacelessInTheDark, false, ""},
+      {9.0, kLost, false, ""}}},
     {"it rests longer where it was of no use",
      {{1.1, kFacelessInTheDark, true, kDark},
       {10.1, kFacelessInTheDark, false, kLong},

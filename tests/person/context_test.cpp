@@ -46,6 +46,37 @@ TEST(Context, OfARegionIsThatOfThePixelsWithinTheImage) {
   EXPECT_EQ(context_of(image, {-100, 0, 50, 48}).dark, 0.0);
   EXPECT_EQ(context_of(image, {}).dark, 0.0);
   EXPECT_EQ(context_of({}, {0, 0, 32, 48}).dark, 0.0);
+  EXPECT_LT(mean_luma(image, {0, 0, 32, 48}), 0.1);
+  EXPECT_GT(mean_luma(image, {32, 0, 32, 48}), 0.9);
+  EXPECT_EQ(mean_luma(image, {-100, 0, 50, 48}), 1.0);
+}
+
+// Bars two pixels wide, blurred along the rows by the mean of so many pixels: more and more is lost, and noise alone is not blurred.
+TEST(Context, IsTheMoreBlurredTheWiderEdgesAre) {
+  constexpr int kWidth = 96, kHeight = 48;
+  const auto blurred_over = [](int pixels) {
+    std::vector<std::uint8_t> yuyv(std::size_t{2} * kWidth * kHeight, 128);
+    const auto bar = [](int x) { return (x / 24) % 2 == 0 ? 60.0 : 180.0; };
+    for (int x = 0; x < kWidth; ++x) {
+      double sum = 0.0;
+      for (int i = 0; i < pixels; ++i) sum += bar(x + i);
+      for (int y = 0; y < kHeight; ++y)
+        yuyv[2 * static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::uint8_t>(sum / pixels);
+    }
+    return context_of({yuyv.data(), kWidth, kHeight, 2 * kWidth, PixelFormat::kYuyv}, {0, 0, kWidth, kHeight}).blurred;
+  };
+  EXPECT_EQ(blurred_over(1), 0.0);
+  EXPECT_GT(blurred_over(12), 0.1);
+  EXPECT_GT(blurred_over(18), blurred_over(12));
+}
+
+TEST(Context, IsNotBlurredWhereNothingCanBeSaid) {
+  const std::vector<std::uint8_t> yuyv(std::size_t{2} * 64 * 48, 128);
+  const ImageView flat{yuyv.data(), 64, 48, 128, PixelFormat::kYuyv};
+  EXPECT_EQ(blur_of(flat, {0, 0, 64, 48}), 0.0) << "no difference";
+  EXPECT_EQ(blur_of(flat, {0, 0, 10, 48}), 0.0) << "too narrow";
+  EXPECT_EQ(blur_of(flat, {100, 100, 64, 48}), 0.0) << "outside";
+  EXPECT_EQ(blur_of({}, {0, 0, 64, 48}), 0.0);
 }
 
 }  // namespace

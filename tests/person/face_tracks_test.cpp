@@ -87,5 +87,27 @@ TEST(FaceTracks, LeavesAFaceToTheTrackThatFollowedItThere) {
   EXPECT_NE(faces.tracks()[0].number, first);
 }
 
+// Recognition is what costs most: however many faces wait, and however soon they are answered, no second has more comparisons than are allowed.
+TEST(FaceTracks, AskForNoMoreComparisonsInASecondThanAreAllowed) {
+  constexpr int kSecond = 30, kUnits = 10;
+  FaceTrackParameters parameters;
+  parameters.ask_again_images = parameters.ask_again_unsure_images = 1;
+  parameters.max_comparisons = 4;
+  FaceTracks faces(detector_of_debian(), parameters);
+  const cv::Mat grey = people_at({210, 320, 430});
+  std::vector<int> asked;
+  for (int image = 0; image < 5 * kSecond; ++image) {
+    look(faces, grey, 1, kUnits);
+    const auto question = faces.question(view_of_grey(grey));
+    if (!question) continue;
+    faces.asked(question->face);
+    faces.hear({question->face, {}});
+    asked.push_back(image);
+  }
+  ASSERT_GE(asked.size(), 16U) << "of 20";
+  EXPECT_LE(asked[3] - asked[0], 5) << "the first are not spread: a name is told at once";
+  for (std::size_t i = 4; i < asked.size(); ++i) EXPECT_GE(asked[i] - asked[i - 4], kSecond);
+}
+
 }  // namespace
 }  // namespace cgsr::person

@@ -387,9 +387,33 @@ TEST(PersonTracker, TrustsAShirtLessInTheDark) {
   while (!tracker.face_is_due()) tracker.update({picture.view()});
   EXPECT_EQ(tracker.update({picture.view(), face_of(std::nullopt, 0.6)}).person, 1);
   while (!tracker.face_is_due()) tracker.update({picture.view()});
-  ImageContext dark;
-  dark.dark = 1.0;
+  PersonContexts dark;
+  dark.shirt.dark = 1.0;
   EXPECT_EQ(tracker.update({picture.view(), face_of(std::nullopt, 0.6)}, dark).person, kStranger);
+}
+
+// A black shirt takes nothing from a face in the light, and a dark face nothing from a shirt.
+TEST(PersonTracker, TrustsAFaceAboveADarkShirtAsMuch) {
+  PersonTracker tracker;
+  const Picture picture = standing(kRed);
+  PersonContexts contexts;
+  contexts.shirt.dark = 1.0;
+  EXPECT_EQ(tracker.update({picture.view(), face_of(1, 0.9)}, contexts).confidence, 0.9);
+  contexts.head.dark = 1.0;
+  EXPECT_LT(tracker.update({picture.view(), face_of(1, 0.9)}, contexts).confidence, 0.6);
+}
+
+// The face alone, as Figure 6.8 compares it.
+TEST(PersonTracker, KnowsNobodyByAShirtWhereShirtsAreTurnedOff) {
+  PersonTrackerParameters parameters;
+  parameters.shirt.enabled = parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  learn(tracker, 1, kRed);
+  EXPECT_EQ(tracker.shirts().people(), 0U);
+  while (!tracker.face_is_due()) tracker.update({standing(kRed).view()});
+  ASSERT_EQ(tracker.update({standing(kRed).view(), face_of(1)}).person, 1);
+  EXPECT_FALSE(tracker.face_is_due()) << "in every other image, as with a shirt";
+  EXPECT_EQ(tracker.update({standing(kRed).view()}).person, std::nullopt);
 }
 
 // Dressed alike: the next image, in which no face is looked for, does not name whom nobody knows any more.

@@ -2,13 +2,22 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
 
 namespace cgsr::person {
+namespace {
+
+constexpr std::int64_t kSecond = 30;  // images
+
+}  // namespace
+
 FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
-    : detector_(std::move(detector)), parameters_(parameters) {
+    : detector_(std::move(detector)),
+      parameters_(parameters),
+      asked_at_(static_cast<std::size_t>(parameters.max_comparisons), -kSecond) {
   tracks_.reserve(kMaxFaces);
   found_.reserve(16);
 }
@@ -51,6 +60,7 @@ void FaceTracks::add(const Box& face) {
 }
 
 void FaceTracks::age() {
+  ++images_;
   for (FaceTrack& track : tracks_) {
     track.seen = false;
     ++track.images_waited_;
@@ -116,10 +126,11 @@ void FaceTracks::look(const ImageView& image, WorkBudget& budget, const std::opt
 }
 
 std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
+  if (images_ - asked_at_[next_asked_] < kSecond) return std::nullopt;
   const FaceTrack* wanted = nullptr;
   for (const FaceTrack& track : tracks_) {
-    if (!track.seen || !is_due(track)) continue;
-    const auto urgency = [](const FaceTrack& t) { return std::pair(!t.match, t.images_waited_); };
+    if (!track.seen || overdue(track) < 1.0) continue;
+    const auto urgency = [this](const FaceTrack& t) { return std::pair(!t.match, overdue(t)); };
     if (wanted == nullptr || urgency(track) > urgency(*wanted)) wanted = &track;
   }
   if (wanted == nullptr) return std::nullopt;
@@ -128,13 +139,17 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
   return question;
 }
 
-bool FaceTracks::is_due(const FaceTrack& track) const {
-  if (!track.match) return true;
+// How long a face has waited, by how long it should. Where there are more than may be compared, each gets its share.
+double FaceTracks::overdue(const FaceTrack& track) const {
+  if (!track.match) return 1.0 + track.images_waited_;
   const bool sure = track.match->confidence >= parameters_.min_sure_confidence && !track.votes_.contradicted();
-  return track.images_waited_ >= (sure ? parameters_.ask_again_images : parameters_.ask_again_unsure_images);
+  const int after_images = sure ? parameters_.ask_again_images : parameters_.ask_again_unsure_images;
+  return static_cast<double>(track.images_waited_) / after_images;
 }
 
 void FaceTracks::asked(std::uint32_t face) {
+  asked_at_[next_asked_] = images_;
+  next_asked_ = (next_asked_ + 1) % asked_at_.size();
   const auto track = std::ranges::find(tracks_, face, &FaceTrack::number);
   if (track != tracks_.end()) track->images_waited_ = 0;
 }

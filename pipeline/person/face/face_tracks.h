@@ -20,6 +20,7 @@ struct FaceTrackParameters {
   int ask_again_images = 15;
   int ask_again_unsure_images = 6;
   double min_sure_confidence = 0.75;
+  int max_comparisons = 3;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -34,6 +35,9 @@ struct FaceTrackParameters {
     visit.number("min_sure_confidence", self.min_sure_confidence, Range{0.5, 1.0}, "",
                  "The confidence from which on a name is sure: above that of a shirt, which overrules a less sure face "
                  "(Alg. 6.1).");
+    visit.number(
+        "max_comparisons", self.max_comparisons, Range{1, 30}, "",
+        "At most so many faces are compared in 30 images, a second: what recognition costs beside the frame path.");
   }
 
   /// \return what is wrong with the keys together; empty when nothing is.
@@ -77,7 +81,7 @@ class FaceTracks {
   /// An image in which known faces are not looked for: one step of the search for others.
   void pass(const ImageView& image, WorkBudget& budget);
 
-  /// \return the crop of the seen face whose name is most wanted; nothing: none is wanted now.
+  /// \return the crop of the seen face whose name is most wanted; nothing: none is wanted now, or no more may be compared yet.
   [[nodiscard]] std::optional<FaceQuestion> question(const ImageView& image) const;
   /// The question of this face was taken.
   void asked(std::uint32_t face);
@@ -93,13 +97,16 @@ class FaceTracks {
   void forget_lost();
   void search(const ImageView& image);
   void add(const Box& face);
-  [[nodiscard]] bool is_due(const FaceTrack& track) const;
+  [[nodiscard]] double overdue(const FaceTrack& track) const;
   [[nodiscard]] FaceTrack* longest_waiting();
 
   FaceDetector detector_;
   FaceTrackParameters parameters_;
   std::vector<FaceTrack> tracks_;
   std::vector<Box> found_;
+  std::int64_t images_ = 0;
+  std::vector<std::int64_t> asked_at_;  // the images of the last max_comparisons questions, the oldest at next_asked_
+  std::size_t next_asked_ = 0;
   int looks_without_search_ = 0;
   std::size_t looks_at_expected_ = 0;  ///< where a face was expected and none known.
   std::uint32_t next_number_ = 1;

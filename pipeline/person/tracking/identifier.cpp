@@ -3,8 +3,6 @@
 #include <tuple>
 #include <utility>
 
-#include "pipeline/person/colors/color_histogram.h"
-
 namespace cgsr::person {
 
 namespace {
@@ -111,14 +109,21 @@ std::optional<Box> Identifier::expected_face() const {
   return face_above(last_.box, last_.face_px);
 }
 
+// Where a shirt or a head is not looked for anew, how the region was taken in which it was last is how it is now.
+PersonContexts Identifier::contexts_of(const ImageView& image, const std::optional<FaceSighting>& face,
+                                       const std::optional<MarkerSighting>& marker) const {
+  const auto head = face ? std::optional(face->box) : expected_face();
+  const Box& shirt = marker ? marker->box : tracker_.shirts().box();
+  return {head ? context_of(image, *head) : ImageContext{}, shirt.empty() ? ImageContext{} : context_of(image, shirt)};
+}
+
 PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> asked, WorkBudget& budget) {
   if (markers_) markers_->look(image, budget);
   look_for_faces(image, budget);
-  // How the region was lit in which the person was last is how it is lit now.
-  const ImageContext context = last_.box.empty() ? ImageContext{} : context_of(region_colors(image, last_.box));
   PeopleInView people;
   const auto marker = marker_of();
-  people.person = tracker_.update({image, face_of(asked), asked ? asked : interest_, marker}, context);
+  const auto face = face_of(asked);
+  people.person = tracker_.update({image, face, asked ? asked : interest_, marker}, contexts_of(image, face, marker));
   last_ = people.person;
   last_marker_face_ = marker ? std::optional(marker->face) : std::nullopt;
   remember(last_, asked);
@@ -126,11 +131,11 @@ PeopleInView Identifier::identify(const ImageView& image, std::optional<Label> a
   if (!faces_) return people;
   for (const FaceTrack& track : faces_->tracks()) {
     if (track.missed > 0) continue;
-    SeenFace& face = people.faces[people.face_count++];
-    face = {track.number, track.box, track.match.has_value(), std::nullopt, 0.0};
+    SeenFace& seen = people.faces[people.face_count++];
+    seen = {track.number, track.box, track.match.has_value(), std::nullopt, 0.0};
     if (!track.match) continue;
-    face.person = track.match->label;
-    face.confidence = track.match->confidence;
+    seen.person = track.match->label;
+    seen.confidence = track.match->confidence;
   }
   return people;
 }

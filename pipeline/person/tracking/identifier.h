@@ -76,6 +76,8 @@ class Identifier {
   [[nodiscard]] std::optional<FaceSighting> face_of(std::optional<Label> asked) const;
   [[nodiscard]] bool is_beside(const FaceTrack& face, std::optional<Label> asked) const;
   [[nodiscard]] std::optional<MarkerSighting> marker_of() const;
+  [[nodiscard]] PersonContexts contexts_of(const ImageView& image, const std::optional<FaceSighting>& face,
+                                           const std::optional<MarkerSighting>& marker) const;
   void remember(const PersonSighting& now, std::optional<Label> asked);
   [[nodiscard]] std::optional<Box> expected_face() const;
 

@@ -82,7 +82,8 @@ void PersonTracker::forget(Label person) {
 }
 
 bool PersonTracker::face_is_due() const {
-  return shirts_.people() == 0 || since_face_ + 1 >= parameters_.faces_every;
+  const bool no_shirt_yet = parameters_.shirt.enabled && shirts_.people() == 0;
+  return no_shirt_yet || since_face_ + 1 >= parameters_.faces_every;
 }
 
 // A map costs as much as looking for faces: each is made in an image without faces, one at a time.
@@ -93,15 +94,15 @@ void PersonTracker::look_up(const ImageView& image, bool due) {
   labels_.look(image);
 }
 
-PersonSighting PersonTracker::update(const PersonImage& input, const ImageContext& context) {
+PersonSighting PersonTracker::update(const PersonImage& input, const PersonContexts& contexts) {
   const bool due = face_is_due();
   since_face_ = due ? 0 : since_face_ + 1;
   look_up(input.image, due);
   feedback_.require(kFace, due);
-  feedback_.rely(kMarker, reliability(Cue::kGrey, context, parameters_.context));
-  feedback_.rely(kFace, reliability(Cue::kGrey, context, parameters_.context));
-  feedback_.rely(kFaceColor, reliability(Cue::kColor, context, parameters_.context));
-  feedback_.rely(kShirt, reliability(Cue::kColor, context, parameters_.context));
+  feedback_.rely(kMarker, reliability(Cue::kGrey, contexts.shirt, parameters_.context));
+  feedback_.rely(kFace, reliability(Cue::kGrey, contexts.head, parameters_.context));
+  feedback_.rely(kFaceColor, reliability(Cue::kColor, contexts.head, parameters_.context));
+  feedback_.rely(kShirt, reliability(Cue::kColor, contexts.shirt, parameters_.context));
   PersonImage now = input;
   if (!due) now.face.reset();
   now.head = head_of(now);

@@ -77,11 +77,11 @@ class PersonTracker {
  public:
   explicit PersonTracker(const PersonTrackerParameters& parameters = {});
 
-  /// Whether a face is to be looked for in the next image: always until a shirt is known, then in every other one (6.2.3).
+  /// Whether a face is to be looked for in the next image: always until a shirt is known, if there is to be one, then in every other one (6.2.3).
   [[nodiscard]] bool face_is_due() const;
 
-  /// \param input  of this image; its face is looked at only where face_is_due() said so.  \param context  how it was taken.
-  PersonSighting update(const PersonImage& input, const ImageContext& context = {});
+  /// \param input  of this image; its face is looked at only where face_is_due() said so.  \param contexts  how it was taken.
+  PersonSighting update(const PersonImage& input, const PersonContexts& contexts = {});
 
   void forget(Label person);
   [[nodiscard]] const ShirtClassifier& shirts() const { return shirts_; }

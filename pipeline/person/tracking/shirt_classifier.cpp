@@ -266,6 +266,7 @@ void ShirtClassifier::prefer(Label person) {
 
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
+  if (!parameters_.enabled) return std::nullopt;
   if (input.interest) prefer(*input.interest);
   box_ = elsewhere_ = {};
   is_sized_by_place_ = false;
@@ -368,7 +369,7 @@ void ShirtClassifier::learn_negative() {
 
 void ShirtClassifier::observe(const PersonImage& input) {
   const auto teacher = teacher_of(input);
-  if (!teacher) return;
+  if (!teacher || !parameters_.enabled) return;
   seen_images_ = teacher->person && teacher->person == seen_ ? seen_images_ + 1 : 1;
   seen_ = teacher->person;
   follow_from(*teacher);

@@ -19,6 +19,7 @@
 namespace cgsr::person {
 
 struct ShirtParameters {
+  bool enabled = true;
   PersonColorParameters colors{};
   PartLightParameters light{};
   PartPlaceParameters place{};
@@ -32,6 +33,7 @@ struct ShirtParameters {
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
+    visit.flag("enabled", self.enabled, "Whether a person is followed by the shirt too, where the face is not seen.");
     visit.section("colors", self.colors, "Colours of people");
     visit.section("light", self.light, "How the light on a shirt is followed");
     visit.section("place", self.place, "How the place of a shirt is followed");
