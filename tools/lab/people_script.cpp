@@ -79,6 +79,14 @@ Case white_shirt(Random& random) {
   return one;
 }
 
+/// Some of the light goes from what it is to a multiple of it in the middle of the run.
+std::string light_script(const char* light, const Shirt& factor, double ramp_s) {
+  return fmt::format(
+      "[[{0}.script]]\nat_s = {1:.2f}\nfactor = [1.0, 1.0, 1.0]\n[[{0}.script]]\nat_s = {2:.2f}\nfactor = [{3:.2f}, "
+      "{4:.2f}, {5:.2f}]\n",
+      light, at(6.0), at(6.0) + ramp_s, factor[0], factor[1], factor[2]);
+}
+
 Case changing_light(Random& random) {
   const Pair pair = draw_pair(random);
   Case one{"light changed by two", pair.identities, {pair.people[0]}, {{0.0, 1, 0.0}}, 12.0, "", false};
@@ -87,10 +95,10 @@ Case changing_light(Random& random) {
   for (double& channel : factor) channel = random.uniform(0.5, 0.8);
   factor[static_cast<std::size_t>(random.below(3))] = 0.5;
   const double ramp_s = random.uniform(0.0, 1.0) < 0.5 ? 0.05 : 2.0;  // switched, or dimmed
-  one.lamp = fmt::format(
-      "[[lamp.script]]\nat_s = {:.2f}\nfactor = [1.0, 1.0, 1.0]\n[[lamp.script]]\nat_s = {:.2f}\nfactor = [{:.2f}, "
-      "{:.2f}, {:.2f}]\n",
-      at(6.0), at(6.0) + ramp_s, factor[0], factor[1], factor[2]);
+  if (random.uniform(0.0, 1.0) < 0.5)
+    for (double& channel : factor) channel = 1.0 / channel;
+  one.lamp = light_script("lamp", factor, ramp_s);
+  one.ambient = light_script("ambient", factor, ramp_s);
   return one;
 }
 
@@ -136,8 +144,28 @@ Case dark_face(Random& random) {
           false};
 }
 
-constexpr std::array<Case (*)(Random&), kPeopleCases> kCases{exchanged_shirts, white_shirt, changing_light,
-                                                             crossing_people, dark_face};
+/// The volunteer of 6.4.1.1: too dark a face in too dark a hall, of whom nothing is known until a light shines on him.
+Case face_in_the_dark(Random& random, bool light) {
+  Case one = dark_face(random);
+  one.name = light ? "dark face in the dark, fill light" : "dark face in the dark, no fill light";
+  const double factor = random.uniform(0.06, 0.12);
+  one.lamp = fmt::format("[[lamp.script]]\nat_s = 0.0\nfactor = [{0:.2f}, {0:.2f}, {0:.2f}]\n", factor);
+  one.ambient = fmt::format("[[ambient.script]]\nat_s = 0.0\nfactor = [{0:.2f}, {0:.2f}, {0:.2f}]\n", factor);
+  one.face_light_lm = 3000.0;  // to all sides: on the face as bright as a torch of 40 lm with a beam of 25 degrees
+  if (light) one.robot = "switches.fill_light_line = \"face light\"\nperson.fill_light.enabled = true\n";
+  return one;
+}
+
+Case lit_face(Random& random) {
+  return face_in_the_dark(random, true);
+}
+
+Case unlit_face(Random& random) {
+  return face_in_the_dark(random, false);
+}
+
+constexpr std::array<Case (*)(Random&), kPeopleCases> kCases{
+    exchanged_shirts, white_shirt, changing_light, crossing_people, dark_face, lit_face, unlit_face};
 
 }  // namespace
 

@@ -45,12 +45,16 @@ struct Case {
   double ends_s = 0.0;
   std::string lamp;  // more keys of the ceiling lamp
   bool white_wall = false;
+  std::string ambient{};  // scripts of the ambient light
+  std::string robot{};    // more keys of the robot
+  double face_light_lm = 250.0;
 };
 
 /// How many kinds of cases there are (6.2.4, 6.3).
-inline constexpr std::size_t kPeopleCases = 5;
+inline constexpr std::size_t kPeopleCases = 7;
 
-/// \return a variation of a case: exchanged shirts, a white shirt before a white wall, light that changes, two people who cross, a dark face in dim light.
+/// \return a variation of a case: exchanged shirts, a white shirt before a white wall, light that changes, two people who cross, a dark face in dim light,
+///     and in the dark with and without a light on the face.
 Case draw_people_case(std::size_t kind, Random& random);
 
 /// \return a figure as the world's file has it.

@@ -29,6 +29,7 @@ constexpr int kAroundChange = 5;  // images that are left out after a change
 struct Counts {
   int images = 0, right = 0, wrong = 0, unsure = 0;
   int late = 0, late_wrong = 0;  // those in which only a face could tell, and had to be looked for
+  int left_out = 0, left_out_wrong = 0;
 };
 
 Counts count(const std::vector<Seen>& seen, const Case& one) {
@@ -39,8 +40,12 @@ Counts count(const std::vector<Seen>& seen, const Case& one) {
         std::ranges::find_if(one.phases, [&](const Phase& phase) { return phase.from_s > image.time_s; });
     const Phase& phase = *std::prev(after);
     const double since_s = image.time_s - phase.from_s;
-    if (phase.number == 0 || (phase.from_s > 0.0 && since_s < kAroundChange * kPeriod_s)) continue;
     const bool wrong = image.number >= 0 && image.number != phase.number;
+    if (phase.number == 0 || (phase.from_s > 0.0 && since_s < kAroundChange * kPeriod_s)) {
+      ++counts.left_out;
+      counts.left_out_wrong += phase.number != 0 && wrong ? 1 : 0;
+      continue;
+    }
     if (since_s < phase.grace_s) {
       ++counts.late;
       counts.late_wrong += wrong ? 1 : 0;
@@ -63,9 +68,10 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 void write_scene(const TableFolder& folder, const std::string& arena, const Case& one) {
   std::string world = replaced(arena, "bounce = 0.006\n", "bounce = 0.006\n" + one.lamp);
   if (one.white_wall) world = replaced(world, "albedo = [0.62, 0.66, 0.68]", "albedo = [0.80, 0.80, 0.79]");
+  world = replaced(world, "lumens = 250.0", fmt::format("lumens = {:.1f}", one.face_light_lm));
   for (std::size_t i = 0; i < one.figures.size(); ++i)
     world += text_of(one.figures[i], fmt::format("figure {}", i + 1));
-  std::ofstream(folder / "world.toml") << world;
+  std::ofstream(folder / "world.toml") << world << one.ambient;
   std::ofstream(folder / "scenario.toml") << fmt::format(
       "world = \"world.toml\"\nrobot = \"robot\"\nends_at_s = {}\n[[line]]\nname = \"arming\"\ninput = true\n"
       "[[line]]\nname = \"face light\"\n",
@@ -87,6 +93,13 @@ void add_rows(const std::string& name, const std::vector<Counts>& casts, std::ui
   add("unsure", &Counts::unsure, &Counts::images);
   if (std::ranges::any_of(casts, [](const Counts& counts) { return counts.late > 0; }))
     add("taken for somebody else in the first second after a return", &Counts::late_wrong, &Counts::late);
+  std::vector<double> left_out, wrong;
+  for (const Counts& counts : casts) {
+    left_out.push_back(counts.left_out);
+    wrong.push_back(counts.left_out_wrong);
+  }
+  report.rows.push_back(mean_row(name, "images left out", "", left_out, seed));
+  report.rows.push_back(mean_row(name, "of them taken for somebody else", "", wrong, seed));
 }
 
 /// Two who look so much alike that the second is refused as the first are drawn again: it is not what these cases are about.
@@ -130,7 +143,7 @@ Result<Report> people_cases(const Setting& setting) {
       redrawn += drawn->second;
       names[i] = one.name;
       write_scene(folder, *arena, one);
-      const auto seen = watch(folder, shipped, seed, "", kTraining_s);
+      const auto seen = watch(folder, shipped, seed, one.robot, kTraining_s);
       if (!seen) return tl::unexpected(seen.error());
       counts[i].push_back(count(*seen, one));
     }
@@ -143,10 +156,15 @@ Result<Report> people_cases(const Setting& setting) {
       "Identities, shirts, heights, places and light are drawn by the seed; intervals are over variations. The robot "
       "has seen the person from the front for 3 s before.",
       fmt::format(
-          "Left out: {} images after each change of the script, and those in which one person covers the other. "
+          "Left out, and counted: {} images after each change of the script, and those in which nobody is there or one "
+          "person covers the other. "
           "After a return in another's shirt, or of a second person, only a face can tell: the first second is "
           "a row of its own.",
-          kAroundChange)};
+          kAroundChange),
+      "The light changes by a factor of up to two, lamp and ambient light alike, in half of the variations to the "
+      "brighter. In the "
+      "dark the robot has to find the face of somebody of whom it knows nothing yet: with a light of its own, and, as "
+      "the counterpart, without."};
   return report;
 }
 
