@@ -1,4 +1,5 @@
 // The steps that make the stage of chapter 6 out of files: the cascade and the people who are known.
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +22,12 @@ Result<void> load_people(RobotState& state) {
         fmt::format("{}: nobody is enrolled; cgsr people enroll --identities FILE --name NAME --input IMAGES does it",
                     config.identities));
   }
+  const person::Label asked = state.setup.config.task.person.number;
+  const bool by_marker = config.identifier.marker.enabled && config.identifier.marker.number == asked;
+  if (asked != person::kStranger && !by_marker && state.setup.config.follows_person() &&
+      std::ranges::find(identities->people, asked, &person::Identity::number) == identities->people.end()) {
+    return fail(fmt::format("task.person.number = {}: nobody in {} has that number", asked, config.identities));
+  }
   state.report.notes.push_back(fmt::format("people: {} enrolled", identities->people.size()));
   state.vision.people = person::gallery_of(*identities, config.identifier.match);
   auto detector = app::read_face_detector(config.cascade, config.identifier.detector);
@@ -34,7 +41,10 @@ Result<void> load_people(RobotState& state) {
 Result<void> make_people(RobotState& state) {
   const config::Person& config = state.setup.config.person;
   if (!config.enabled()) return {};
-  const person::IdentifierParameters& parameters = config.identifier;
+  person::IdentifierParameters parameters = config.identifier;
+  person::ShirtParameters& shirt = parameters.tracker.shirt;
+  shirt.max_width_px = std::max(shirt.max_width_px, state.devices.mode.width_px);
+  shirt.max_height_px = std::max(shirt.max_height_px, state.devices.mode.height_px);
   std::unique_ptr<person::FaceRecognizer> recognizer;
   if (!state.vision.people) {
     state.report.notes.push_back(

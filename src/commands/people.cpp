@@ -38,7 +38,6 @@ int run_identify(const PeopleOptions& options) {
     ended = !*more;
     progress.show(fmt::format("image {}: {} faces", run->images(), run->faces()));
   }
-  if (const auto finished = run->finish(); !finished) return report(finished.error());
   fmt::print("{} images{}, {} faces\n", run->images(), ended ? "" : " until it was stopped", run->faces());
   for (const std::string& line : run->summary()) fmt::print("{}\n", line);
   if (!options.csv.empty()) fmt::print("rows     {}\n", options.csv);
@@ -46,9 +45,12 @@ int run_identify(const PeopleOptions& options) {
 }
 
 int run_forget(const PeopleOptions& options) {
-  const auto count = forget(options);
-  if (!count) return report(count.error());
+  const auto forgotten = forget(options);
+  if (!forgotten) return report(forgotten.error());
   fmt::print("{} is forgotten\n", options.name);
+  for (const auto& copy : forgotten->copies)
+    fmt::print(stderr, "warning: {} was damaged and kept; it may hold {} still: delete it\n", copy.string(),
+               options.name);
   return kSuccess;
 }
 

@@ -22,8 +22,14 @@ using person::FaceView;
 using person::Identity;
 using person::Label;
 
+constexpr std::size_t kMaxProblems = 20;  // that the summary tells one by one
 constexpr const char* kColumns = "frame,identity,source,confidence,x,y,width,height";
 constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
+
+// How far faces are from somebody's views, by how far they are from each other.
+constexpr double kMuchFarther = 1.5;  // photographs of one person: .6 to 1.4; generated faces of two: from 1.55 on
+constexpr double kAlike = 0.03;       // nearer than this are only images of one sitting,
+constexpr double kUnlike = 0.035;     // and farther only images of which some are bad
 
 double distance(const FaceDescriptor& face, const FaceView& view) {
   std::array<double, person::kViewSide * person::kViewSide> points{};
@@ -91,9 +97,6 @@ std::string person_name(const person::Identities& identities, Label number) {
 /// The gallery alone is not enough where few are enrolled: nobody tells it how alike faces are in this light, from this camera.
 std::optional<Label> person_of_most(const std::vector<FaceDescriptor>& faces, double among,
                                     const person::FaceGallery& gallery) {
-  constexpr double kMuchFarther = 1.5;  // photographs of one person: .6 to 1.4; generated faces of two: from 1.55 on
-  constexpr double kAlike = 0.03;       // nearer than this are only images of one sitting,
-  constexpr double kUnlike = 0.035;     // and farther only images of which some are bad
   struct Named {
     std::size_t faces = 0;
     double distance = 0.0;  // sum
@@ -125,6 +128,7 @@ Result<Identity*> person_to_enroll(person::Identities& identities, const PeopleO
   }
   if (!is_known && options.more) return fail(fmt::format("{}: there is no '{}'", options.identities, options.name));
   if (is_known) return &*known;
+  if (const auto problem = name_problem(options.name)) return fail("--name: " + *problem);
   identities.people.push_back({identities.next_number++, options.name, {}});
   return &identities.people.back();
 }
@@ -138,7 +142,17 @@ void add_views(std::vector<FaceView>& views, const std::vector<FaceDescriptor>& 
   views.erase(views.begin() + 1, views.begin() + 1 + too_many);
 }
 
-/// Adds the person to those who are known, and writes the file.
+/// Whether faces are much farther from somebody's views than they are from each other: then they are somebody else's, or bad.
+bool are_unlike(const std::vector<FaceDescriptor>& faces, double among, const std::vector<FaceView>& views) {
+  if (views.empty()) return false;
+  person::FaceGallery hers(person::FaceMatchParameters{.min_views = 1});
+  for (const FaceView& view : views) hers.enroll(1, view);
+  double sum = 0.0;
+  for (const FaceDescriptor& face : faces) sum += hers.identify(face).distance;
+  return sum / static_cast<double>(faces.size()) > kMuchFarther * std::clamp(among, kAlike, kUnlike);
+}
+
+/// Adds the person to those who are known.
 Result<Enrolled> enroll_among(person::Identities& identities, const PeopleOptions& options) {
   const person::FaceGallery others = gallery_of(identities);
   const auto who = person_to_enroll(identities, options);
@@ -148,16 +162,20 @@ Result<Enrolled> enroll_among(person::Identities& identities, const PeopleOption
   if (!faces) return tl::unexpected(faces.error());
   const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
   const auto chosen = most_different(*faces, max_views);
-  const auto other = person_of_most(*faces, mean_distance_among(*faces, chosen), others);
+  const double among = mean_distance_among(*faces, chosen);
+  const auto other = person_of_most(*faces, among, others);
   if (other && *other != enrolled.number && !options.alike) {
     return fail(
         fmt::format("{}: this is the face of '{}', who is enrolled already; --alike enrols somebody else who "
                     "looks like that person",
                     options.input, person_name(identities, *other)));
   }
+  if (!options.alike && are_unlike(*faces, among, (*who)->views)) {
+    return fail(fmt::format("{}: this is not the face of '{}' as far as it is known; --alike adds it all the same",
+                            options.input, options.name));
+  }
   add_views((*who)->views, *faces, chosen, max_views);
   enrolled.views = static_cast<int>((*who)->views.size());
-  if (auto saved = save_identities(identities, options.identities); !saved) return tl::unexpected(saved.error());
   return enrolled;
 }
 
@@ -170,33 +188,36 @@ Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
 }
 
 Result<Enrolled> enroll(const PeopleOptions& options) {
-  auto opened = open_identities(options.identities);
-  if (!opened) return tl::unexpected(opened.error());
-  auto enrolled = enroll_among(opened->identities, options);
-  if (opened->note.empty()) return enrolled;
-  // The damaged file is under another name by now, whatever else goes wrong.
-  if (!enrolled) return fail(fmt::format("{}; {}", enrolled.error().message, opened->note));
-  enrolled->note = opened->note;
+  auto file = IdentitiesEdit::open(options.identities);
+  if (!file) return tl::unexpected(file.error());
+  auto enrolled = enroll_among(file->identities(), options);
+  if (!enrolled) return enrolled;
+  auto note = file->save();
+  if (!note) return tl::unexpected(note.error());
+  enrolled->note = std::move(*note);
   return enrolled;
 }
 
-Result<int> forget(const PeopleOptions& options) {
-  auto identities = load_identities(options.identities);
-  if (!identities) return tl::unexpected(identities.error());
+Result<Forgotten> forget(const PeopleOptions& options) {
+  const auto sound = load_identities(options.identities);
+  if (!sound) return tl::unexpected(sound.error());
+  auto file = IdentitiesEdit::open(options.identities);
+  if (!file) return tl::unexpected(file.error());
   const auto is_it = [&](const Identity& one) { return one.name == options.name; };
-  const int count = static_cast<int>(std::erase_if(identities->people, is_it));
-  if (count == 0) return fail(fmt::format("{}: there is no '{}'", options.identities, options.name));
-  if (auto saved = save_identities(*identities, options.identities); !saved) return tl::unexpected(saved.error());
-  return count;
+  if (std::erase_if(file->identities().people, is_it) == 0)
+    return fail(fmt::format("{}: there is no '{}'", options.identities, options.name));
+  if (const auto note = file->save(); !note) return tl::unexpected(note.error());
+  return Forgotten{kept_aside(options.identities)};
 }
 
 IdentifyRun::IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input,
-                         person::FaceDetector detector)
+                         person::FaceDetector detector, std::optional<TextFile> csv)
     : options_(std::move(options)),
       identities_(std::move(identities)),
       input_(std::move(input)),
       detector_(std::move(detector)),
-      gallery_(gallery_of(identities_)) {}
+      gallery_(gallery_of(identities_)),
+      csv_(std::move(csv)) {}
 
 Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
   OutputClaims files(options.force);
@@ -212,38 +233,50 @@ Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
   if (!detector) return tl::unexpected(detector.error());
   auto input = ImageInput::open({options.input, 0, 0, 0, 0});
   if (!input) return tl::unexpected(input.error());
-  return IdentifyRun(options, std::move(*identities), std::move(*input), std::move(*detector));
+  std::optional<TextFile> csv;
+  if (!options.csv.empty()) {
+    auto created = TextFile::create(options.csv);
+    if (!created) return tl::unexpected(created.error());
+    csv = std::move(*created);
+    if (auto added = csv->add_line(kColumns); !added) return tl::unexpected(added.error());
+  }
+  return IdentifyRun(options, std::move(*identities), std::move(*input), std::move(*detector), std::move(csv));
 }
 
-void IdentifyRun::add_face(const ImageView& image, const Box& face) {
+Result<void> IdentifyRun::add_row(const std::string& row) {
+  return csv_ ? csv_->add_line(row) : Result<void>{};
+}
+
+Result<void> IdentifyRun::add_face(const ImageView& image, const Box& face) {
   const person::GreyPatch crop = person::face_crop(image, face);
-  if (crop.pixels.empty()) return;
+  if (crop.pixels.empty()) return {};
   const auto match = person::identify_crop(crop, gallery_);
   const Label number = match.label.value_or(0);
   ++seen_[number];
   ++faces_;
-  rows_ += fmt::format("{},{},face,{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}\n", images_, number, match.confidence, face.x,
-                       face.y, face.width, face.height);
+  return add_row(fmt::format("{},{},face,{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}", images_, number, match.confidence, face.x,
+                             face.y, face.width, face.height));
 }
 
 Result<bool> IdentifyRun::step() {
   const auto next = input_.next();
   if (next.end) return false;
+  Result<void> written;
   if (next.image) {
     const auto faces = detector_.find_all(next.image.view());
-    for (const Box& face : faces) add_face(next.image.view(), face);
-    if (faces.empty()) rows_ += fmt::format("{},,none,,,,,\n", images_);
+    for (const Box& face : faces) {
+      written = add_face(next.image.view(), face);
+      if (!written) break;
+    }
+    if (faces.empty()) written = add_row(fmt::format("{},,none,,,,,", images_));
   } else {
-    problems_.push_back(fmt::format("image {}: {}", images_, next.problem));
-    rows_ += fmt::format("{},,unreadable,,,,,\n", images_);
+    if (problems_.size() < kMaxProblems) problems_.push_back(fmt::format("image {}: {}", images_, next.problem));
+    ++unreadable_;
+    written = add_row(fmt::format("{},,unreadable,,,,,", images_));
   }
+  if (!written) return tl::unexpected(written.error());
   ++images_;
   return true;
-}
-
-Result<void> IdentifyRun::finish() const {
-  if (options_.csv.empty()) return {};
-  return write_file(options_.csv, fmt::format("{}\n{}", kColumns, rows_));
 }
 
 std::vector<std::string> IdentifyRun::summary() const {
@@ -251,6 +284,8 @@ std::vector<std::string> IdentifyRun::summary() const {
   for (const auto& [number, count] : seen_)
     lines.push_back(fmt::format("{:6} faces: number {}, {}", count, number, person_name(identities_, number)));
   lines.insert(lines.end(), problems_.begin(), problems_.end());
+  if (unreadable_ > static_cast<int>(problems_.size()))
+    lines.push_back(fmt::format("{} images in all were not readable", unreadable_));
   return lines;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,7 @@
 #include "pipeline/person/identities.h"
 #include "platform/error.h"
 #include "src/input/image_input.h"
+#include "src/output/text_file.h"
 
 namespace cgsr::app {
 
@@ -41,21 +44,24 @@ struct Enrolled {
 
 /// Enrols the person whose face is alone in each image of the input: of those faces, the ones that differ most from each other become views.
 /// Images without a face or with several are left out. Of more views than can be kept the oldest go, but never the first. Written when all went well.
-/// \return an error says also where a damaged identities file has been put (open_identities()).
+/// A damaged identities file is put aside then (IdentitiesEdit).
 Result<Enrolled> enroll(const PeopleOptions& options);
 
-/// Takes a person out of the identities file. \return how many of this name there were; an error: none.
-Result<int> forget(const PeopleOptions& options);
+/// What forget() leaves to be done.
+struct Forgotten {
+  std::vector<std::filesystem::path> copies;  ///< damaged files that were kept aside, and may hold the person still.
+};
+
+/// Takes a person out of the identities file. \return an error: there is nobody of this name.
+Result<Forgotten> forget(const PeopleOptions& options);
 
 /// The work of `cgsr people identify`, an image at a time.
 class IdentifyRun {
  public:
   static Result<IdentifyRun> open(const PeopleOptions& options);
 
-  /// \return false at the end of the images.
+  /// Writes the image's rows at once. \return false at the end of the images.
   Result<bool> step();
-  /// Writes the CSV.
-  Result<void> finish() const;
 
   [[nodiscard]] int images() const { return images_; }
   [[nodiscard]] int faces() const { return faces_; }
@@ -63,8 +69,10 @@ class IdentifyRun {
   [[nodiscard]] std::vector<std::string> summary() const;
 
  private:
-  IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input, person::FaceDetector detector);
-  void add_face(const ImageView& image, const Box& face);
+  IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input, person::FaceDetector detector,
+              std::optional<TextFile> csv);
+  Result<void> add_row(const std::string& row);
+  Result<void> add_face(const ImageView& image, const Box& face);
 
   PeopleOptions options_;
   person::Identities identities_;
@@ -72,8 +80,9 @@ class IdentifyRun {
   person::FaceDetector detector_;
   person::FaceGallery gallery_;
   std::map<person::Label, int> seen_;  // 0: strangers
-  std::vector<std::string> problems_;
-  std::string rows_;
+  std::optional<TextFile> csv_;
+  std::vector<std::string> problems_;  // the first
+  int unreadable_ = 0;
   int images_ = 0;
   int faces_ = 0;
 };

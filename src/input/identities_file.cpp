@@ -2,15 +2,18 @@
 
 #include <fcntl.h>
 #include <openssl/sha.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -80,7 +83,7 @@ tl::unexpected<ReadFailure> unreadable(const std::filesystem::path& path, const 
 }
 
 tl::unexpected<ReadFailure> damaged(const std::filesystem::path& path, const std::string& why) {
-  return tl::unexpected(ReadFailure{{fmt::format("{}: damaged, or no identities file: {}", path.string(), why)}, true});
+  return tl::unexpected(ReadFailure{{fmt::format("{}: damaged: {}", path.string(), why)}, true});
 }
 
 /// A file descriptor that closes itself.
@@ -115,19 +118,29 @@ bool write_privately(const std::filesystem::path& path, const Bytes& bytes) {
   return file.number() >= 0 && write_all(file.number(), bytes);
 }
 
+// The format's name is the first text of the file. What is cut off or changed behind it is damaged, an empty file is what a full disk left; anything else is
+// somebody else's.
+bool is_ours(const Bytes& bytes) {
+  constexpr std::ptrdiff_t kHead = 64;
+  const auto end = bytes.begin() + std::min(kHead, static_cast<std::ptrdiff_t>(bytes.size()));
+  const std::string_view format = kFormat;
+  return bytes.empty() || std::search(bytes.begin(), end, format.begin(), format.end()) != end;
+}
+
 tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error == std::errc::no_such_file_or_directory) return Identities{};
   if (error) return unreadable(path, "cannot be read: " + error.message());
-  if (size > kLargestFile) return damaged(path, "it is larger than any");
+  if (size > kLargestFile) return unreadable(path, "no identities file: it is larger than any");
   std::ifstream in(path, std::ios::binary);
   const Bytes bytes(std::istreambuf_iterator<char>(in), {});
   if (bytes.size() != size) return unreadable(path, "cannot be read");
+  if (!is_ours(bytes)) return unreadable(path, "no identities file: it is something else");
   if (const auto problem = cbor_depth_problem(bytes)) return damaged(path, *problem);
   try {
     const json file = json::from_cbor(bytes);
-    if (!file.is_object() || file.value("format", "") != kFormat) return damaged(path, "it is something else");
+    if (!file.is_object() || file.value("format", "") != kFormat) return damaged(path, "its first entry is no format");
     if (const int version = file.at("version").get<int>(); version > kIdentitiesVersion) {
       return unreadable(path, fmt::format("version {} is newer than this program's {}", version, kIdentitiesVersion));
     }
@@ -141,18 +154,55 @@ tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::pat
   }
 }
 
+/// What a symbolic link points to; the path itself where it is none.
+std::filesystem::path target_of(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_symlink(path, error)) return path;
+  auto target = std::filesystem::weakly_canonical(path, error);
+  return error ? path : target;
+}
+
+std::filesystem::path damaged_name(std::filesystem::path path, int number) {
+  path += fmt::format(".damaged-{}", number);
+  return path;
+}
+
+Result<std::filesystem::path> put_aside(const std::filesystem::path& path) {
+  int number = 1;
+  while (std::filesystem::exists(damaged_name(path, number))) ++number;
+  auto aside = damaged_name(path, number);
+  std::error_code error;
+  std::filesystem::rename(path, aside, error);
+  if (error) return fail(error.message());
+  using std::filesystem::perms;
+  std::filesystem::permissions(aside, perms::owner_read | perms::owner_write, error);
+  return aside;
+}
+
 }  // namespace
 
+std::optional<std::string> name_problem(std::string_view name) {
+  if (name.empty()) return "the name is empty";
+  if (name.size() > kMaxNameBytes)
+    return fmt::format("the name has {} bytes, expected at most {}", name.size(), kMaxNameBytes);
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; };
+  if (std::ranges::any_of(name, is_control)) return "the name has control characters";
+  return std::nullopt;
+}
+
 Result<void> save_identities(const Identities& identities, const std::filesystem::path& path) {
+  for (const Identity& one : identities.people)
+    if (const auto problem = name_problem(one.name)) return fail(fmt::format("{}: {}", path.string(), *problem));
+  const auto target = target_of(path);
   const Bytes payload = json::to_cbor(json_of(identities));
   const Bytes bytes = json::to_cbor(json{{"format", kFormat},
                                          {"version", kIdentitiesVersion},
                                          {"sha256", json::binary(sha256_of(payload))},
                                          {"payload", json::binary(payload)}});
-  auto beside = path;
+  auto beside = target;
   beside += ".part";
   errno = 0;
-  if (!write_privately(beside, bytes) || std::rename(beside.c_str(), path.c_str()) != 0) {
+  if (!write_privately(beside, bytes) || std::rename(beside.c_str(), target.c_str()) != 0) {
     const std::string why = errno != 0 ? std::strerror(errno) : "unknown cause";
     ::unlink(beside.c_str());
     return fail(fmt::format("{}: cannot be written: {}", path.string(), why));
@@ -166,19 +216,61 @@ Result<Identities> load_identities(const std::filesystem::path& path) {
   return std::move(*read);
 }
 
-Result<OpenedIdentities> open_identities(const std::filesystem::path& path) {
-  auto read = read_identities(path);
-  if (read) return OpenedIdentities{std::move(*read), {}};
-  const std::string& message = read.error().error.message;
-  if (!read.error().damaged) return fail(message);
+/// Of the folder: the file itself gives way to a new one when it is written.
+class IdentitiesEdit::FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {}
+
+  [[nodiscard]] bool is_open() const { return folder_.number() >= 0; }
+  [[nodiscard]] bool wait() const {
+    constexpr int kTries = 100;
+    constexpr std::chrono::milliseconds kPause{100};
+    for (int i = 0; i < kTries; ++i) {
+      if (::flock(folder_.number(), LOCK_EX | LOCK_NB) == 0) return true;
+      std::this_thread::sleep_for(kPause);
+    }
+    return false;
+  }
+
+ private:
+  Descriptor folder_;
+};
+
+IdentitiesEdit::IdentitiesEdit(std::filesystem::path path, Identities identities, std::string damage,
+                               std::shared_ptr<const FolderLock> lock)
+    : path_(std::move(path)), identities_(std::move(identities)), damage_(std::move(damage)), lock_(std::move(lock)) {}
+
+Result<IdentitiesEdit> IdentitiesEdit::open(const std::filesystem::path& path) {
+  const auto target = target_of(path);
+  const auto lock = std::make_shared<const FolderLock>(target.has_parent_path() ? target.parent_path() : ".");
+  if (!lock->is_open())
+    return fail(fmt::format("{}: its folder cannot be read: {}", path.string(), std::strerror(errno)));
+  if (!lock->wait()) return fail(fmt::format("{}: another cgsr people has been changing it for 10 s", path.string()));
+  auto read = read_identities(target);
+  if (!read && !read.error().damaged) return tl::unexpected(read.error().error);
+  std::string damage = read ? std::string() : read.error().error.message;
+  return IdentitiesEdit(target, read ? std::move(*read) : Identities{}, std::move(damage), lock);
+}
+
+Result<std::string> IdentitiesEdit::save() {
+  std::string note;
+  if (!damage_.empty()) {
+    const auto aside = put_aside(path_);
+    if (!aside) return fail(fmt::format("{}; it cannot be put aside: {}", damage_, aside.error().message));
+    note = fmt::format("{}; kept as {}", damage_, aside->string());
+    damage_.clear();
+  }
+  if (auto saved = save_identities(identities_, path_); !saved) return tl::unexpected(saved.error());
+  return note;
+}
+
+std::vector<std::filesystem::path> kept_aside(const std::filesystem::path& path) {
+  std::vector<std::filesystem::path> found;
   for (int number = 1;; ++number) {
-    auto aside = path;
-    aside += fmt::format(".damaged-{}", number);
-    if (std::filesystem::exists(aside)) continue;
-    std::error_code error;
-    std::filesystem::rename(path, aside, error);
-    if (error) return fail(fmt::format("{}; it cannot be put aside: {}", message, error.message()));
-    return OpenedIdentities{{}, fmt::format("{}; kept as {}", message, aside.string())};
+    auto aside = damaged_name(target_of(path), number);
+    if (!std::filesystem::exists(aside)) return found;
+    found.push_back(std::move(aside));
   }
 }
 

@@ -137,6 +137,46 @@ TEST_F(RunWithPeople, EnrollsTwoWhoLookAlikeAndRefusesTheSameFaceUnderAnotherNam
   EXPECT_THAT(twin.output, HasSubstr("is number 3"));
 }
 
+TEST_F(RunWithPeople, AddsNoViewsOfSomebodyElse) {
+  enroll(0, kName);
+  take_portraits(3, scratch_ / "other");
+  std::vector<std::string> words{"people", "enroll", "--identities", identities(),      "--name",
+                                 kName,    "--more", "--input",      scratch_ / "other"};
+  const auto refused = run_cgsr(words);
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_THAT(refused.errors, HasSubstr("--alike adds it all the same"));
+  words.emplace_back("--alike");
+  EXPECT_EQ(run_cgsr(words).exit_code, 0);
+}
+
+TEST_F(RunWithPeople, RefusesASecondOfOneNameAndAnUnusableOne) {
+  enroll(0, kName);
+  const auto enroll_as = [&](const std::string& name) {
+    return run_cgsr(
+        {"people", "enroll", "--identities", identities(), "--name", name, "--input", scratch_ / "portraits0"});
+  };
+  EXPECT_THAT(enroll_as(kName).errors, HasSubstr("is there already, as number 1"));
+  EXPECT_THAT(enroll_as(std::string(300, 'a')).errors, HasSubstr("has 300 bytes"));
+  const auto known = load_identities(identities());
+  ASSERT_TRUE(known) << known.error().message;
+  EXPECT_EQ(known->people.size(), 1U);
+}
+
+TEST_F(RunWithPeople, SaysWhereAForgottenPersonMayStillBe) {
+  enroll(0, kName);
+  write_text(identities() + ".damaged-1", "what was kept");
+  const auto forgotten = run_cgsr({"people", "forget", "--identities", identities(), "--name", kName});
+  EXPECT_EQ(forgotten.exit_code, 0) << forgotten.errors;
+  EXPECT_THAT(forgotten.errors, HasSubstr("identities.damaged-1 was damaged and kept"));
+}
+
+TEST_F(RunWithPeople, RefusesToFollowANumberThatNobodyHas) {
+  enroll(0, kName);
+  const auto run = run_cgsr({"check", "--config", robot({{"task.person.number", "99"}})});
+  EXPECT_NE(run.exit_code, 0);
+  EXPECT_THAT(run.output + run.errors, HasSubstr("task.person.number = 99: nobody in"));
+}
+
 // Views beyond the number that is kept take the place of older ones, not of the first.
 TEST_F(RunWithPeople, KeepsTheFirstViewOfWhomMoreViewsAreAddedTo) {
   enroll(0, kName);
@@ -194,10 +234,10 @@ TEST_F(RunWithPeople, KeepsToOneOfTwoKnownPeopleSideBySide) {
   ASSERT_EQ(first.size(), 1U) << "one person of interest";
   EXPECT_GE(first.begin()->second, 40);
   const auto named = numbers_in({"people", "follow", "--config", robot(scenario), "--name", "Dora"});
-  // Her face is found within a round of the search, 16 images, and named some images after that.
+  // Her face is found within a round of the search, 16 images, and named when two comparisons were free: the other face took those of the first second.
   const int before = named.contains("1") ? named.at("1") : 0;
   const int hers = named.contains("2") ? named.at("2") : 0;
-  EXPECT_LE(before, 24) << "before Dora's face has a name";
+  EXPECT_LE(before, 42) << "before Dora's face has a name";
   EXPECT_GE(before + hers, 55) << "of 66 images";
   const auto nobody = run_cgsr({"people", "follow", "--config", robot(scenario), "--name", "Emil"});
   EXPECT_NE(nobody.exit_code, 0);

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -74,31 +76,94 @@ TEST_F(IdentitiesFile, RefusesEveryDamageAndKeepsTheFileAside) {
   const std::string good = bytes();
   std::string flipped = good;
   flipped[flipped.size() / 2] ^= 1;
-  int aside = 0;
-  for (const std::string& bad : {std::string("not CBOR"), std::string(), good.substr(0, good.size() / 2), flipped}) {
+  std::vector<fs::path> aside;
+  for (const std::string& bad : {std::string(), good.substr(0, good.size() / 2), flipped}) {
     write(bad);
+    fs::permissions(file_, fs::perms::all);
     const auto read = load_identities(file_);
     ASSERT_FALSE(read);
     EXPECT_NE(read.error().message.find("damaged"), std::string::npos) << read.error().message;
-    EXPECT_EQ(bytes(), bad) << "reading changes nothing";
-    const auto opened = open_identities(file_);
-    ASSERT_TRUE(opened) << opened.error().message;
-    EXPECT_TRUE(opened->identities.people.empty());
-    const fs::path kept = file_.string() + fmt::format(".damaged-{}", ++aside);
-    EXPECT_TRUE(fs::exists(kept));
-    EXPECT_EQ(fs::file_size(kept), bad.size());
-    EXPECT_NE(opened->note.find(kept.string()), std::string::npos);
+    auto edit = IdentitiesEdit::open(file_);
+    ASSERT_TRUE(edit) << edit.error().message;
+    EXPECT_TRUE(edit->identities().people.empty());
+    EXPECT_EQ(bytes(), bad) << "as long as nothing is written everything stays";
+    edit->identities() = some(1);
+    const auto note = edit->save();
+    ASSERT_TRUE(note) << note.error().message;
+    aside.emplace_back(file_.string() + fmt::format(".damaged-{}", aside.size() + 1));
+    EXPECT_EQ(fs::file_size(aside.back()), bad.size());
+    EXPECT_EQ(fs::status(aside.back()).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_NE(note->find(aside.back().string()), std::string::npos) << *note;
+    ASSERT_TRUE(load_identities(file_));
+  }
+  EXPECT_EQ(kept_aside(file_), aside);
+}
+
+// Somebody names the robot's file instead.
+TEST_F(IdentitiesFile, LeavesAnothersFileWhereItIs) {
+  write("[task]\nkind = \"person\"\n");
+  const auto edit = IdentitiesEdit::open(file_);
+  ASSERT_FALSE(edit);
+  EXPECT_NE(edit.error().message.find("no identities file: it is something else"), std::string::npos)
+      << edit.error().message;
+  EXPECT_EQ(bytes(), "[task]\nkind = \"person\"\n");
+}
+
+TEST_F(IdentitiesFile, WritesWhatALinkPointsTo) {
+  ASSERT_TRUE(save_identities(some(2), file_));
+  const fs::path link = folder_ / "link.cbor";
+  fs::create_symlink(file_, link);
+  auto edit = IdentitiesEdit::open(link);
+  ASSERT_TRUE(edit) << edit.error().message;
+  edit->identities().people.pop_back();
+  ASSERT_TRUE(edit->save());
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(load_identities(file_)->people.size(), 1U);
+}
+
+TEST_F(IdentitiesFile, LetsOneAfterTheOtherChangeIt) {
+  ASSERT_TRUE(save_identities(person::Identities{}, file_));
+  const auto add_some = [this] {
+    for (int i = 0; i < 20; ++i) {
+      auto edit = IdentitiesEdit::open(file_);
+      ASSERT_TRUE(edit) << edit.error().message;
+      person::Identities& all = edit->identities();
+      all.people.push_back({all.next_number++, "somebody", {}});
+      ASSERT_TRUE(edit->save());
+    }
+  };
+  std::thread one(add_some), other(add_some);
+  one.join();
+  other.join();
+  const auto all = load_identities(file_);
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->people.size(), 40U);
+  EXPECT_EQ(all->next_number, 41);
+}
+
+TEST_F(IdentitiesFile, RefusesANameThatItWouldNotReadAgain) {
+  for (const std::string& name : {std::string(), std::string(300, 'a'), std::string("two\nlines")}) {
+    EXPECT_TRUE(name_problem(name));
+    person::Identities identities = some(1);
+    identities.people.front().name = name;
+    EXPECT_FALSE(save_identities(identities, file_));
     EXPECT_FALSE(fs::exists(file_));
   }
+  EXPECT_FALSE(name_problem("Zo\xC3\xAB"));
 }
 
 // A parser that recurses would exhaust its stack.
 TEST_F(IdentitiesFile, RefusesADeeplyNestedOne) {
   for (const char head : {'\x9F', '\x7F'}) {
-    write(std::string(4U << 20, head));
+    write(
+        "\xA2\x66"  // a map of two: its format and
+        "format\x6F"
+        "cgsr identities\x67"
+        "payload" +
+        std::string(4U << 20, head));
     const auto read = load_identities(file_);
     ASSERT_FALSE(read);
-    EXPECT_NE(read.error().message.find("offset 16: an item that holds others is 17 deep, expected at most 16"),
+    EXPECT_NE(read.error().message.find("offset 47: an item that holds others is 17 deep, expected at most 16"),
               std::string::npos)
         << read.error().message;
   }
