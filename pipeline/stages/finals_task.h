@@ -30,6 +30,8 @@ class FinalsTask final : public Task {
   Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
 
   [[nodiscard]] FinalsState state() const { return state_; }
+  /// As FollowPersonTask's.
+  void keep_to(std::shared_ptr<const behavior::FreeFloor> floor) { follow_.keep_to(std::move(floor)); }
 
  private:
   void see_person(const person::PersonSighting& who, const ImageView& image, Events& events);

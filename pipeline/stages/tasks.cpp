@@ -79,7 +79,8 @@ FollowPersonTask::FollowPersonTask(const behavior::FollowPersonParameters& perso
                                    const geometry::Camera& camera, const behavior::FillLightParameters& light)
     : person_(person.number),
       follow_(by_faces(follow), face_at_a_metre(person.face_width_m, camera.fx_px), limits),
-      camera_(camera) {
+      camera_(camera),
+      deceleration_mps2_(limits.max_deceleration_mps2) {
   if (light.enabled) light_.emplace(light);
 }
 
@@ -139,6 +140,13 @@ void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const Imag
   decision.events.add(event);
 }
 
+void FollowPersonTask::keep_to_floor(const FrameResult& frame, Decision& decision) const {
+  if (!floor_) return;
+  const auto kept = behavior::keep_to_floor(*floor_, pose_to_drive_by(frame.pose), decision.goal, deceleration_mps2_);
+  if (kept.forward_mps != decision.goal.forward_mps) decision.reason = "the map's free floor ends there";
+  decision.goal = kept;
+}
+
 // Where the person was a moment ago is where he is, until somebody else stands there: faces are looked for in every other image.
 Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
@@ -159,6 +167,7 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if (!last_ && is_with_a_stranger()) reason = "the face above the shirt is a stranger's";
   Decision decision{follow.goal, follow.halt, behavior::to_string(follow.state), reason, {}};
   decision.requests = first_requests();
+  keep_to_floor(frame, decision);
   light_the_face(people, image, elapsed, decision);
   return decision;
 }

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "pipeline/behavior/fill_light.h"
 #include "pipeline/behavior/follow.h"
 #include "pipeline/behavior/follow_person_parameters.h"
+#include "pipeline/behavior/free_floor.h"
+#include "pipeline/behavior/keep_to_floor.h"
 #include "pipeline/behavior/look_along.h"
 #include "pipeline/behavior/route.h"
 #include "pipeline/behavior/seek_lamp.h"
@@ -44,6 +48,8 @@ class FollowPersonTask final : public Task {
   [[nodiscard]] Requests first_requests() const override;
   Decision decide(const FrameResult& frame, const ImageView& image, Duration elapsed) override;
 
+  /// From the next image on the robot drives no farther than the map's floor is free, where its pose is known (behavior::keep_to_floor()).
+  void keep_to(std::shared_ptr<const behavior::FreeFloor> floor) { floor_ = std::move(floor); }
   /// From the next image on the person is followed only where face or marker say who it is; false: by the shirt too.
   void follow_by_primary_only(bool only) { by_primary_only_ = only; }
   /// Whether the face above the shirt by which the person is followed has been a stranger's for so long that the shirt is somebody else's.
@@ -51,6 +57,7 @@ class FollowPersonTask final : public Task {
 
  private:
   void look_above_the_shirt(const IdentifiedPeople& people);
+  void keep_to_floor(const FrameResult& frame, Decision& decision) const;
   [[nodiscard]] behavior::Sighting sighting_of(const person::PersonSighting& who, const ImageView& image) const;
   void light_the_face(const IdentifiedPeople* people, const ImageView& image, Duration elapsed, Decision& decision);
 
@@ -59,6 +66,8 @@ class FollowPersonTask final : public Task {
   std::optional<behavior::Sighting> last_;  // of the person, with its age
   geometry::Camera camera_;
   std::optional<behavior::FillLight> light_;
+  std::shared_ptr<const behavior::FreeFloor> floor_;  // null: no map
+  double deceleration_mps2_;
   bool by_primary_only_ = false;
   int stranger_images_ = 0;  // in a row, of those in which a face was found above the shirt
 };

@@ -97,13 +97,18 @@ Result<void> make_tracker(RobotState& state, const color::ColorModel& model) {
   return {};
 }
 
+/// \return null: there is no map, or no camera and so no pose to plan with.
+std::shared_ptr<const behavior::FreeFloor> floor_of(const RobotState& state,
+                                                    const behavior::FreeFloorParameters& floor) {
+  if (!state.calibration.camera || !state.vision.map) return nullptr;
+  return std::make_shared<behavior::FreeFloor>(*state.vision.map, floor);
+}
+
 behavior::SeekLamp seek_lamp_of(const RobotState& state) {
   const config::Robot& config = state.setup.config;
   const auto& board = config.probes.board;
   const auto& area = config.motion.keep_in;
-  const auto map =
-      state.calibration.camera ? state.vision.map : nullptr;  // without a camera there is no pose to plan with
-  return {config.task.lamp, map ? std::make_shared<behavior::FreeFloor>(*map, config.task.lamp.floor) : nullptr,
+  return {config.task.lamp, floor_of(state, config.task.lamp.floor),
           behavior::BoardPlace{board.position_m[0], board.position_m[2]},
           behavior::KeptArea{area.enabled, area.min_x_m + kAreaMargin_m, area.max_x_m - kAreaMargin_m,
                              area.min_y_m + kAreaMargin_m, area.max_y_m - kAreaMargin_m},
@@ -143,12 +148,16 @@ Result<std::unique_ptr<stages::Task>> task_of(RobotState& state) {
                                                 optics_of(state));
   }
   if (config.task.kind == config::TaskKind::kPerson) {
-    return std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
-                                                      optics_of(state), config.person.fill_light);
+    auto task = std::make_unique<stages::FollowPersonTask>(config.task.person, config.follow, config.motion,
+                                                           optics_of(state), config.person.fill_light);
+    task->keep_to(floor_of(state, config.task.person.floor));
+    return task;
   }
   if (config.task.kind == config::TaskKind::kFinals) {
-    return std::make_unique<stages::FinalsTask>(config.task.finals, config.task.person, config.follow, config.motion,
-                                                optics_of(state), config.person.fill_light);
+    auto task = std::make_unique<stages::FinalsTask>(config.task.finals, config.task.person, config.follow,
+                                                     config.motion, optics_of(state), config.person.fill_light);
+    task->keep_to(floor_of(state, config.task.person.floor));
+    return task;
   }
   if (config.task.kind == config::TaskKind::kLine) {
     return std::make_unique<stages::WhoIsWhoTask>(behavior::LookAlong(config.task.line, config.motion),

@@ -1,9 +1,11 @@
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "pipeline/stages/tasks.h"
+#include "tests/behavior/two_rooms.h"
 
 namespace cgsr::stages {
 namespace {
@@ -186,6 +188,27 @@ TEST_F(FollowPerson, DoesNotDriveByAnIdentificationThatIsNotOfThisImage) {
   frame.people.stamp = MonoTime{seconds(1.0)};
   frame.people.age = kImage;
   EXPECT_TRUE(follower.decide(frame, image_, kImage).halt);
+}
+
+// The person is beyond a table that the map holds and the camera does not tell from the floor.
+TEST_F(FollowPerson, StaysOnTheMapsFreeFloor) {
+  FollowPersonTask task = this->task(4);
+  task.keep_to(std::make_shared<behavior::FreeFloor>(behavior::test::two_rooms(), behavior::FreeFloorParameters{}));
+  const auto goal_at = [&](double x_m, Duration pose_age) {
+    FrameResult frame;
+    frame.people.value.person = face(4, 30.0);
+    frame.people.age = Duration::zero();
+    frame.pose.value.robot = {true, x_m, 1.0, 0.0};  // looks along x, at the wall at 4 m
+    frame.pose.age = pose_age;
+    Decision decision;
+    for (int image = 0; image < 60; ++image) decision = task.decide(frame, ImageView{nullptr, 640, 480, 1280, PixelFormat::kYuyv}, kImage);
+    return decision;
+  };
+  EXPECT_GT(goal_at(1.0, Duration::zero()).goal.forward_mps, 0.2);
+  const Decision before_the_wall = goal_at(3.58, Duration::zero());
+  EXPECT_LT(before_the_wall.goal.forward_mps, 0.05);
+  EXPECT_EQ(before_the_wall.reason, "the map's free floor ends there");
+  EXPECT_GT(goal_at(3.58, seconds(60.0)).goal.forward_mps, 0.2) << "the pose is too old to say";
 }
 
 }  // namespace
