@@ -84,6 +84,17 @@ TEST(PartLight, FollowsASlowChangeWhileTheShirtIsFound) {
   EXPECT_FALSE(light.found(1, {in_light(0.4, 0.4, 1.0).part, in_light(0.6, 0.6, 1.0).beside})) << "a print";
 }
 
+TEST(PartLight, IsTheOneBeforeWhereLessIsSeenUnderTheNew) {
+  PartLight light = learned();
+  ASSERT_TRUE(light.found(1, in_light(0.7, 0.7, 0.7)));
+  light.undo(1);
+  EXPECT_NEAR(light.of(1)->r, 0.8, 1e-9);
+  EXPECT_FALSE(light.found(1, in_light(0.7, 0.7, 0.7))) << "that is how it looks in the old light";
+  light.undo(1);
+  EXPECT_NEAR(light.of(1)->r, 0.8, 1e-9) << "once for each change";
+  light.undo(2);
+}
+
 // A shirt that was followed into a lamp's light, and is gone for long.
 TEST(PartLight, IsThatOfLearningInTurnsAfterALongLoss) {
   PartLight light = learned();

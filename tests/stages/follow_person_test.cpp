@@ -201,7 +201,8 @@ TEST_F(FollowPerson, StaysOnTheMapsFreeFloor) {
     frame.pose.value.robot = {true, x_m, 1.0, 0.0};  // looks along x, at the wall at 4 m
     frame.pose.age = pose_age;
     Decision decision;
-    for (int image = 0; image < 60; ++image) decision = task.decide(frame, ImageView{nullptr, 640, 480, 1280, PixelFormat::kYuyv}, kImage);
+    for (int image = 0; image < 60; ++image)
+      decision = task.decide(frame, ImageView{nullptr, 640, 480, 1280, PixelFormat::kYuyv}, kImage);
     return decision;
   };
   EXPECT_GT(goal_at(1.0, Duration::zero()).goal.forward_mps, 0.2);

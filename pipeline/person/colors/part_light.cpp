@@ -74,13 +74,20 @@ bool PartLight::found(Label person, const PartColors& colors) {
   part->before.reset();
   part->other.reset();
   if (const auto light = light_by(*part, colors)) {
-    part->used = *light;
+    part->last = std::exchange(part->used, *light);
     part->colors = colors;
     return true;
   }
   if (!differs(change_of(colors.part, part->colors->part), kNoChange, parameters_.min_change / 2))
     part->colors->beside = colors.beside;
   return false;
+}
+
+void PartLight::undo(Label person) {
+  Part* part = find(person);
+  if (part == nullptr || !part->last) return;
+  part->used = *part->last;
+  part->last.reset();
 }
 
 bool PartLight::suppose(Label person, const PartColors& now) {

@@ -56,6 +56,9 @@ class PartLight {
 
   /// The part was found and looks like this. \return whether the light has changed and it is to be looked for under another one, which of() tells.
   bool found(Label person, const PartColors& colors);
+  /// Under the light that found() said has come the part is lost, or less of it is seen: it is looked for under the one before again, and what it looks
+  /// like now counts as how it looks under that.
+  void undo(Label person);
   /// The part was lost, and its last place looks like this.
   /// \return whether it is to be looked for under another light, which of() tells; false where no light explains it.
   bool suppose(Label person, const PartColors& now);
@@ -75,6 +78,7 @@ class PartLight {
     color::Light used{};                   // under which it is looked for
     std::optional<PartColors> colors{};    // under `used`
     std::optional<color::Light> before{};  // suppose(): what was used until then
+    std::optional<color::Light> last{};    // found(): what was used until the light changed
     std::optional<color::Light> other{};   // turn(): what is not in use now
   };
   Part* find(Label person);

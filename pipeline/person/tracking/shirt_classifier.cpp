@@ -267,6 +267,7 @@ void ShirtClassifier::prefer(Label person) {
 std::optional<Classification> ShirtClassifier::classify(const PersonImage& input) {
   last_ = input;
   if (!parameters_.enabled) return std::nullopt;
+  check_light();
   if (input.interest) prefer(*input.interest);
   box_ = elsewhere_ = {};
   is_sized_by_place_ = false;
@@ -296,7 +297,28 @@ void ShirtClassifier::found(const PersonImage& input, Label person) {
   missed_ = since_trained_ = 0;
   supposed_ = false;
   const auto colors = colors_of(input.image, place_);
-  if (colors && light_.found(person, *colors)) map_is_due_ = true;
+  if (!colors || !light_.found(person, *colors)) return;
+  pixels_before_ = pixels_at_place();
+  map_is_due_ = true;
+}
+
+int ShirtClassifier::pixels_at_place() const {
+  const LabelImage place = labels_.of(ColorPart::kShirt).within(in_labels(place_));
+  const std::uint16_t label = label_of(*person_);
+  int pixels = 0;
+  for (int y = 0; y < place.height_px; ++y)
+    for (int x = 0; x < place.width_px; ++x) pixels += place.at(x, y) == label ? 1 : 0;
+  return pixels;
+}
+
+// A shirt that comes into view from another side, or goes behind something, can look as if the light had changed. Under the right light no less of it is seen.
+void ShirtClassifier::check_light() {
+  constexpr double kNoLess = 0.7;
+  if (!pixels_before_ || map_is_due_) return;  // the map of that light is not made yet
+  const int before = *std::exchange(pixels_before_, std::nullopt);
+  if (!person_ || pixels_at_place() >= kNoLess * before) return;
+  light_.undo(*person_);
+  map_is_due_ = true;
 }
 
 // The light may have changed at once: then the place where the shirt was has, in the new light, the shirt's colours. This is supposed once for each loss.
@@ -385,7 +407,7 @@ void ShirtClassifier::forget(Label person) {
   std::erase_if(last_faces_, [person](const PersonHead& one) { return one.person == person; });
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
-  if (person_ == person) person_.reset();
+  if (person_ == person) person_.reset(), pixels_before_.reset();
   if (preferred_ == person) preferred_.reset();
   if (followed_person_ == person) followed_.end();
 }

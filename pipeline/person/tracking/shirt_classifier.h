@@ -114,6 +114,8 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] std::uint16_t label_of(Label person) const;
   void found(const PersonImage& input, Label person);
   void lost(const PersonImage& input);
+  [[nodiscard]] int pixels_at_place() const;
+  void check_light();
 
   ShirtParameters parameters_;
   ColorLabels& labels_;
@@ -137,8 +139,10 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   std::optional<Label> followed_person_;  // whose
   bool is_sized_by_place_ = false;        // how far away the shirt is says the trunk, not its blob
   int since_place_learned_ = 0;
-  int missed_ = 0;          // images since then; 0: it was found in the last one
-  bool supposed_ = false;   // the map is of a light that is only supposed
+  int missed_ = 0;         // images since then; 0: it was found in the last one
+  bool supposed_ = false;  // the map is of a light that is only supposed
+  std::optional<int>
+      pixels_before_;       // of the shirt at its place, in the image in which its light was said to have changed
   int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
   int since_shared_ = 0;    // images since a shirt was relearned that was taken for the preferred person's; 0: never
   int since_negative_ = 0;  // images since negative samples were learned; 0: never
