@@ -16,7 +16,7 @@ std::string_view FillLight::reason_to_begin(const FaceEvidence& evidence, double
   const bool faceless = evidence.expected && !evidence.seen && evidence.dark >= parameters_.min_dark;
   faceless_s_ = faceless ? faceless_s_ + passed_s : 0.0;
   lost_s_ += evidence.lost ? passed_s : 0.0;
-  held_ = has_shown_ && in_state_s_ <= kJust_s && lost_s_ >= kLost_s;
+  held_ = has_shown_ && evidence.dark >= parameters_.min_dark && in_state_s_ <= kJust_s && lost_s_ >= kLost_s;
   if (held_) return "nobody is seen without it";
   if (in_state_s_ < rest_s_ || faceless_s_ < parameters_.no_face_s) return {};
   return "no face where one should be, and it is dark";
@@ -36,7 +36,8 @@ FillLightDecision FillLight::decide(const FaceEvidence& evidence, Duration elaps
     return why.empty() ? FillLightDecision{on_, false, {}} : turn(true, why);
   }
   if (evidence.seen) face_s_ += passed_s;
-  gone_s_ = evidence.seen || evidence.expected ? 0.0 : gone_s_ + passed_s;
+  const bool left = evidence.lost && face_s_ > 0.0;  // whom it showed
+  gone_s_ = evidence.seen || (evidence.expected && !left) ? 0.0 : gone_s_ + passed_s;
   const std::string_view reason = reason_to_end();
   if (reason.empty()) return {on_, false, {}};
   has_shown_ = face_s_ > 0.0;

@@ -12,7 +12,7 @@
 namespace cgsr::stages {
 namespace {
 
-// A face has its name for two comparisons at least, and is compared again after six images while it is not sure.
+// A face has its name for two comparisons at least, and by then the third, that of a face that is not sure, has been answered too.
 constexpr int kStrangerImages = 12;
 
 behavior::FollowParameters by_faces(behavior::FollowParameters follow) {

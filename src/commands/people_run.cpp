@@ -152,31 +152,30 @@ bool are_unlike(const std::vector<FaceDescriptor>& faces, double among, const st
   return sum / static_cast<double>(faces.size()) > kMuchFarther * std::clamp(among, kAlike, kUnlike);
 }
 
-/// Adds the person to those who are known.
-Result<Enrolled> enroll_among(person::Identities& identities, const PeopleOptions& options) {
+/// Adds the person whose faces these are to those who are known.
+Result<void> enroll_among(person::Identities& identities, const std::vector<FaceDescriptor>& faces,
+                          const PeopleOptions& options, Enrolled& enrolled) {
   const person::FaceGallery others = gallery_of(identities);
   const auto who = person_to_enroll(identities, options);
   if (!who) return tl::unexpected(who.error());
-  Enrolled enrolled{.number = (*who)->number, .note = {}};
-  const auto faces = lone_faces(options, enrolled);
-  if (!faces) return tl::unexpected(faces.error());
+  enrolled.number = (*who)->number;
   const auto max_views = static_cast<std::size_t>(person::FaceMatchParameters{}.max_views);
-  const auto chosen = most_different(*faces, max_views);
-  const double among = mean_distance_among(*faces, chosen);
-  const auto other = person_of_most(*faces, among, others);
+  const auto chosen = most_different(faces, max_views);
+  const double among = mean_distance_among(faces, chosen);
+  const auto other = person_of_most(faces, among, others);
   if (other && *other != enrolled.number && !options.alike) {
     return fail(
         fmt::format("{}: this is the face of '{}', who is enrolled already; --alike enrols somebody else who "
                     "looks like that person",
                     options.input, person_name(identities, *other)));
   }
-  if (!options.alike && are_unlike(*faces, among, (*who)->views)) {
+  if (!options.alike && are_unlike(faces, among, (*who)->views)) {
     return fail(fmt::format("{}: this is not the face of '{}' as far as it is known; --alike adds it all the same",
                             options.input, options.name));
   }
-  add_views((*who)->views, *faces, chosen, max_views);
+  add_views((*who)->views, faces, chosen, max_views);
   enrolled.views = static_cast<int>((*who)->views.size());
-  return enrolled;
+  return {};
 }
 
 }  // namespace
@@ -187,14 +186,19 @@ Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
   return read_face_detector(options.cascade, parameters);
 }
 
+// Looking through the images may take long: the file is not held meanwhile.
 Result<Enrolled> enroll(const PeopleOptions& options) {
+  if (const auto could = IdentitiesEdit::open(options.identities); !could) return tl::unexpected(could.error());
+  Enrolled enrolled;
+  const auto faces = lone_faces(options, enrolled);
+  if (!faces) return tl::unexpected(faces.error());
   auto file = IdentitiesEdit::open(options.identities);
   if (!file) return tl::unexpected(file.error());
-  auto enrolled = enroll_among(file->identities(), options);
-  if (!enrolled) return enrolled;
+  if (const auto added = enroll_among(file->identities(), *faces, options, enrolled); !added)
+    return tl::unexpected(added.error());
   auto note = file->save();
   if (!note) return tl::unexpected(note.error());
-  enrolled->note = std::move(*note);
+  enrolled.note = std::move(*note);
   return enrolled;
 }
 

@@ -162,16 +162,20 @@ std::filesystem::path target_of(const std::filesystem::path& path) {
   return error ? path : target;
 }
 
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+}
+
 std::filesystem::path damaged_name(std::filesystem::path path, int number) {
   path += fmt::format(".damaged-{}", number);
   return path;
 }
 
 Result<std::filesystem::path> put_aside(const std::filesystem::path& path) {
-  int number = 1;
-  while (std::filesystem::exists(damaged_name(path, number))) ++number;
-  auto aside = damaged_name(path, number);
   std::error_code error;
+  int number = 1;
+  while (std::filesystem::exists(damaged_name(path, number), error)) ++number;
+  auto aside = damaged_name(path, number);
   std::filesystem::rename(path, aside, error);
   if (error) return fail(error.message());
   using std::filesystem::perms;
@@ -223,14 +227,15 @@ class IdentitiesEdit::FolderLock {
       : folder_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {}
 
   [[nodiscard]] bool is_open() const { return folder_.number() >= 0; }
-  [[nodiscard]] bool wait() const {
+  [[nodiscard]] Result<void> wait() const {
     constexpr int kTries = 100;
     constexpr std::chrono::milliseconds kPause{100};
     for (int i = 0; i < kTries; ++i) {
-      if (::flock(folder_.number(), LOCK_EX | LOCK_NB) == 0) return true;
+      if (::flock(folder_.number(), LOCK_EX | LOCK_NB) == 0) return {};
+      if (errno != EWOULDBLOCK && errno != EINTR) return fail(std::strerror(errno));
       std::this_thread::sleep_for(kPause);
     }
-    return false;
+    return fail("another cgsr people has been changing it for 10 s");
   }
 
  private:
@@ -243,10 +248,11 @@ IdentitiesEdit::IdentitiesEdit(std::filesystem::path path, Identities identities
 
 Result<IdentitiesEdit> IdentitiesEdit::open(const std::filesystem::path& path) {
   const auto target = target_of(path);
-  const auto lock = std::make_shared<const FolderLock>(target.has_parent_path() ? target.parent_path() : ".");
+  const auto lock = std::make_shared<const FolderLock>(folder_of(target));
   if (!lock->is_open())
     return fail(fmt::format("{}: its folder cannot be read: {}", path.string(), std::strerror(errno)));
-  if (!lock->wait()) return fail(fmt::format("{}: another cgsr people has been changing it for 10 s", path.string()));
+  if (const auto locked = lock->wait(); !locked)
+    return fail(fmt::format("{}: {}", path.string(), locked.error().message));
   auto read = read_identities(target);
   if (!read && !read.error().damaged) return tl::unexpected(read.error().error);
   std::string damage = read ? std::string() : read.error().error.message;
@@ -261,17 +267,22 @@ Result<std::string> IdentitiesEdit::save() {
     note = fmt::format("{}; kept as {}", damage_, aside->string());
     damage_.clear();
   }
-  if (auto saved = save_identities(identities_, path_); !saved) return tl::unexpected(saved.error());
+  if (auto saved = save_identities(identities_, path_); !saved)
+    return fail(note.empty() ? saved.error().message : fmt::format("{}; {}", saved.error().message, note));
   return note;
 }
 
 std::vector<std::filesystem::path> kept_aside(const std::filesystem::path& path) {
+  const auto target = target_of(path);
+  const std::string prefix = target.filename().string() + ".damaged-";
   std::vector<std::filesystem::path> found;
-  for (int number = 1;; ++number) {
-    auto aside = damaged_name(target_of(path), number);
-    if (!std::filesystem::exists(aside)) return found;
-    found.push_back(std::move(aside));
-  }
+  std::error_code error;
+  for (std::filesystem::directory_iterator one(folder_of(target), error), end; !error && one != end;
+       one.increment(error))
+    if (one->path().filename().string().starts_with(prefix))
+      found.push_back(target.parent_path() / one->path().filename());
+  std::ranges::sort(found);
+  return found;
 }
 
 }  // namespace cgsr::app

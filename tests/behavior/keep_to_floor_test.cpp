@@ -43,6 +43,21 @@ TEST_F(KeepToFloor, StopsBeforeAWall) {
   }
 }
 
+TEST_F(KeepToFloor, ChangesNoSpeedWhereThereIsRoom) {
+  for (double mps = 0.01; mps < 1.0; mps += 0.013)
+    EXPECT_EQ(keep_to_floor(floor_, {true, 3.0, 1.0, std::numbers::pi}, {mps, 0.0}, kBrakes_mps2).forward_mps, mps);
+}
+
+// Armed too near to the wall at x = 0.
+TEST_F(KeepToFloor, LetsTheRobotBackOntoTheFloor) {
+  const PlanarPose at_the_wall{true, 0.25, 1.0, std::numbers::pi};
+  EXPECT_EQ(keep_to_floor(floor_, at_the_wall, {0.3, 0.0}, kBrakes_mps2).forward_mps, 0.0);
+  const double back_mps = keep_to_floor(floor_, at_the_wall, {-0.3, 0.0}, kBrakes_mps2).forward_mps;
+  EXPECT_LT(back_mps, 0.0);
+  EXPECT_GE(back_mps, -0.1);
+  EXPECT_EQ(keep_to_floor(floor_, {true, -2.0, 1.0, 0.0}, {0.3, 0.0}, kBrakes_mps2).forward_mps, 0.0) << "off the map";
+}
+
 TEST_F(KeepToFloor, KnowsNothingWithoutAPose) {
   EXPECT_EQ(keep_to_floor(floor_, {false, 0.1, 1.0, std::numbers::pi}, {0.5, 0.0}, kBrakes_mps2).forward_mps, 0.5);
 }

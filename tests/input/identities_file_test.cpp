@@ -97,6 +97,8 @@ TEST_F(IdentitiesFile, RefusesEveryDamageAndKeepsTheFileAside) {
     ASSERT_TRUE(load_identities(file_));
   }
   EXPECT_EQ(kept_aside(file_), aside);
+  fs::remove(aside.front());
+  EXPECT_EQ(kept_aside(file_).size(), aside.size() - 1) << "also where one was deleted";
 }
 
 // Somebody names the robot's file instead.

@@ -88,6 +88,12 @@ void PartLight::undo(Label person) {
   if (part == nullptr || !part->last) return;
   part->used = *part->last;
   part->last.reset();
+  part->before.reset();
+  part->other.reset();
+}
+
+void PartLight::confirm(Label person) {
+  if (Part* part = find(person)) part->last.reset();
 }
 
 bool PartLight::suppose(Label person, const PartColors& now) {

@@ -59,6 +59,8 @@ class PartLight {
   /// Under the light that found() said has come the part is lost, or less of it is seen: it is looked for under the one before again, and what it looks
   /// like now counts as how it looks under that.
   void undo(Label person);
+  /// It is seen as well under the light that found() said has come: that one stays.
+  void confirm(Label person);
   /// The part was lost, and its last place looks like this.
   /// \return whether it is to be looked for under another light, which of() tells; false where no light explains it.
   bool suppose(Label person, const PartColors& now);

@@ -112,7 +112,8 @@ std::optional<Box> Identifier::expected_face() const {
 // Where a shirt or a head is not looked for anew, how the region was taken in which it was last is how it is now.
 PersonContexts Identifier::contexts_of(const ImageView& image, const std::optional<FaceSighting>& face,
                                        const std::optional<MarkerSighting>& marker) const {
-  const auto head = face ? std::optional(face->box) : expected_face();
+  const bool was_face = last_.source == PersonSource::kFace;
+  const auto head = face ? std::optional(face->box) : was_face ? std::optional(last_.box) : expected_face();
   const Box& shirt = marker ? marker->box : tracker_.shirts().box();
   return {head ? context_of(image, *head) : ImageContext{}, shirt.empty() ? ImageContext{} : context_of(image, shirt)};
 }

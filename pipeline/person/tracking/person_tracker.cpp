@@ -86,10 +86,15 @@ bool PersonTracker::face_is_due() const {
   return no_shirt_yet || since_face_ + 1 >= parameters_.faces_every;
 }
 
-// A map costs as much as looking for faces: each is made in an image without faces, one at a time.
+// A map costs as much as looking for faces: each is made in an image without faces, one at a time, in turns where both are due.
 void PersonTracker::look_up(const ImageView& image, bool due) {
   if (!due || parameters_.faces_every == 1) {
-    if (!shirts_.prepare()) face_colors_.prepare();
+    heads_first_ = !heads_first_;
+    if (heads_first_) {
+      if (!face_colors_.prepare()) shirts_.prepare();
+    } else if (!shirts_.prepare()) {
+      face_colors_.prepare();
+    }
   }
   labels_.look(image);
 }

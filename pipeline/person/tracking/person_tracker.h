@@ -111,6 +111,7 @@ class PersonTracker {
   FaceColorClassifier face_colors_;
   ShirtClassifier shirts_;
   FeedbackClassifier<PersonImage> feedback_;
+  bool heads_first_ = false;               // the map of heads is made before that of shirts
   int since_face_ = 0;                     // images since one was looked for
   std::optional<PersonSighting> by_face_;  // who was decided on by face when faces were last looked for
   std::vector<Size> sizes_;                // of those whose shirts are known, and of whoever was measured last

@@ -292,31 +292,39 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
 
 // After a loss its person may be nearer or farther away: how large the shirt was says nothing any longer. A light that changes loses it for a few images.
 void ShirtClassifier::found(const PersonImage& input, Label person) {
+  if (person != person_) before_light_.reset();
   place_ = person == person_ && missed_ < kLongLoss ? settled(place_, box_) : box_;
   person_ = person;
   missed_ = since_trained_ = 0;
   supposed_ = false;
   const auto colors = colors_of(input.image, place_);
   if (!colors || !light_.found(person, *colors)) return;
-  pixels_before_ = pixels_at_place();
+  constexpr double kRoom = 0.5;  // of its sides, to each side
+  const Box window{place_.x - kRoom * place_.width, place_.y - kRoom * place_.height,
+                   (1.0 + 2.0 * kRoom) * place_.width, (1.0 + 2.0 * kRoom) * place_.height};
+  before_light_ = {window, pixels_in(window)};
   map_is_due_ = true;
 }
 
-int ShirtClassifier::pixels_at_place() const {
-  const LabelImage place = labels_.of(ColorPart::kShirt).within(in_labels(place_));
+int ShirtClassifier::pixels_in(const Box& window) const {
+  const LabelImage part = labels_.of(ColorPart::kShirt).within(in_labels(window));
   const std::uint16_t label = label_of(*person_);
   int pixels = 0;
-  for (int y = 0; y < place.height_px; ++y)
-    for (int x = 0; x < place.width_px; ++x) pixels += place.at(x, y) == label ? 1 : 0;
+  for (int y = 0; y < part.height_px; ++y)
+    for (int x = 0; x < part.width_px; ++x) pixels += part.at(x, y) == label ? 1 : 0;
   return pixels;
 }
 
 // A shirt that comes into view from another side, or goes behind something, can look as if the light had changed. Under the right light no less of it is seen.
 void ShirtClassifier::check_light() {
   constexpr double kNoLess = 0.7;
-  if (!pixels_before_ || map_is_due_) return;  // the map of that light is not made yet
-  const int before = *std::exchange(pixels_before_, std::nullopt);
-  if (!person_ || pixels_at_place() >= kNoLess * before) return;
+  if (!before_light_ || map_is_due_) return;  // the map of that light is not made yet
+  const Before before = *std::exchange(before_light_, std::nullopt);
+  if (!person_) return;
+  if (pixels_in(before.window) >= kNoLess * before.pixels) {
+    light_.confirm(*person_);
+    return;
+  }
   light_.undo(*person_);
   map_is_due_ = true;
 }
@@ -330,11 +338,12 @@ void ShirtClassifier::lost(const PersonImage& input) {
     light_.take_back(*person_);
     map_is_due_ = true;
   }
-  constexpr int kTurn = 2;  // images; between them there is room for another map
+  constexpr int kTurn = 2;  // images
   if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && light_.turn(*person_)) map_is_due_ = true;
   if (missed_ != 1) return;
   const auto now = colors_of(input.image, place_);
   if (!now || !light_.suppose(*person_, *now)) return;
+  before_light_.reset();
   supposed_ = map_is_due_ = true;
 }
 
@@ -407,7 +416,7 @@ void ShirtClassifier::forget(Label person) {
   std::erase_if(last_faces_, [person](const PersonHead& one) { return one.person == person; });
   map_is_due_ = true;
   if (seen_ == person) seen_.reset();
-  if (person_ == person) person_.reset(), pixels_before_.reset();
+  if (person_ == person) person_.reset(), before_light_.reset();
   if (preferred_ == person) preferred_.reset();
   if (followed_person_ == person) followed_.end();
 }

@@ -114,7 +114,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] std::uint16_t label_of(Label person) const;
   void found(const PersonImage& input, Label person);
   void lost(const PersonImage& input);
-  [[nodiscard]] int pixels_at_place() const;
+  [[nodiscard]] int pixels_in(const Box& window) const;
   void check_light();
 
   ShirtParameters parameters_;
@@ -141,8 +141,12 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   int since_place_learned_ = 0;
   int missed_ = 0;         // images since then; 0: it was found in the last one
   bool supposed_ = false;  // the map is of a light that is only supposed
-  std::optional<int>
-      pixels_before_;       // of the shirt at its place, in the image in which its light was said to have changed
+  // In the image in which the shirt's light was said to have changed: where it was, with room to move, and how many pixels of it were there.
+  struct Before {
+    Box window;
+    int pixels = 0;
+  };
+  std::optional<Before> before_light_;
   int since_trained_ = 0;   // images since a shirt was relearned and not found since; 0: was found
   int since_shared_ = 0;    // images since a shirt was relearned that was taken for the preferred person's; 0: never
   int since_negative_ = 0;  // images since negative samples were learned; 0: never
