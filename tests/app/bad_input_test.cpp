@@ -282,19 +282,22 @@ TEST_F(BadInputFault, PeopleWhoAreNotThere) {
   EXPECT_FALSE(std::filesystem::exists(people));
 }
 
-// Whoever enrols is about to write the file, so a damaged one is put aside first: where it is says the failure that comes after it.
-TEST_F(BadInputFault, ADamagedIdentitiesFileIsNamedWhereTheEnrolmentFails) {
+// Somebody else's file is refused before an image is looked at; a damaged one is put aside when the new one is written, and here none is.
+TEST_F(BadInputFault, AnIdentitiesFileThatIsNoneOrDamagedStaysWhereTheEnrolmentFails) {
   const std::string people = scratch_ / "people";
-  write_text(people, "these are no identities\n");
-  const auto failed = run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", images()});
-  expect_refused(failed, "with exactly one face");
-  EXPECT_THAT(failed.errors, HasSubstr("kept as " + people + ".damaged-1"));
-  EXPECT_TRUE(std::filesystem::exists(people + ".damaged-1"));
-  write_text(people, "nor are these\n");
-  const auto unknown =
-      run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--more", "--input", images()});
-  expect_refused(unknown, "there is no 'a'");
-  EXPECT_THAT(unknown.errors, HasSubstr("kept as " + people + ".damaged-2"));
+  const std::string damaged =
+      "\xA2\x66"
+      "format\x6F"
+      "cgsr identities\x67"
+      "payload cut off";
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"these are no identities\n", "no identities file: it is something else"}, {damaged, "with exactly one face"}};
+  for (const auto& [text, refusal] : cases) {
+    write_text(people, text);
+    expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", images()}), refusal);
+    EXPECT_EQ(read_text(people), text);
+    EXPECT_FALSE(std::filesystem::exists(people + ".damaged-1"));
+  }
 }
 
 TEST_F(BadInputFault, OutputsThatWouldReplaceAFileOfAnotherKind) {
