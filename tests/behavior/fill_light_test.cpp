@@ -128,6 +128,26 @@ TEST(FillLight, NeverFlickers) {
   }
 }
 
+// Whom it showed has left a dark room for good: it is held on once more, for whoever is not seen without it, and then it rests.
+TEST(FillLight, ComesToRestInAnEmptyRoom) {
+  FillLight light{FillLightParameters{}};
+  int changes = 0;
+  bool on = false;
+  const auto see = [&](const FaceEvidence& evidence, double for_s) {
+    for (int image = 0; image < static_cast<int>(for_s / to_seconds(kImage) + 0.5); ++image) {
+      const FillLightDecision decision = light.decide(evidence, kImage);
+      changes += decision.changed ? 1 : 0;
+      on = decision.on;
+    }
+  };
+  see(kLost, 1.5);
+  see(kFace, 1.0);
+  ASSERT_TRUE(on);
+  see(kLost, 60.0);
+  EXPECT_EQ(changes, 4) << "on, off, held on, off";
+  EXPECT_FALSE(on);
+}
+
 TEST(FillLight, TakesATimeThatRunsBackwardsForNone) {
   FillLight light{FillLightParameters{}};
   for (int image = 0; image < 100; ++image) EXPECT_FALSE(light.decide(kFacelessInTheDark, seconds(-1.0)).on);
