@@ -84,6 +84,47 @@ TEST(PartLight, FollowsASlowChangeWhileTheShirtIsFound) {
   EXPECT_FALSE(light.found(1, {in_light(0.4, 0.4, 1.0).part, in_light(0.6, 0.6, 1.0).beside})) << "a print";
 }
 
+// A channel that the shirt hardly reflects is told coarsely, and changes with what leaks into it.
+TEST(PartLight, IsToldByTheChannelsThatTheShirtReflects) {
+  constexpr Rgb kCyan{0.06, 0.44, 0.56};
+  PartLight light;
+  light.learn(1, kAssumed);
+  light.found(1, {kCyan, kBeside});
+  const Rgb beside = in_light(0.7, 0.7, 0.75).beside;
+  ASSERT_TRUE(light.suppose(1, {{0.08, 0.7 * kCyan.g, 0.75 * kCyan.b}, beside}));
+  EXPECT_NEAR(light.of(1)->r, 0.56, 1e-9) << "as beside";
+  EXPECT_NEAR(light.of(1)->b, 0.6, 1e-9);
+  PartLight other;
+  other.learn(1, kAssumed);
+  other.found(1, {kCyan, kBeside});
+  EXPECT_FALSE(other.suppose(1, {{0.06, 0.7 * kCyan.g, 0.5 * kCyan.b}, beside})) << "one that it reflects has changed alone";
+}
+
+// A change of a percent in an image: what is beside the shirt keeps changing with it until it is enough for another light.
+TEST(PartLight, AddsUpAChangeThatIsSmallInEachImage) {
+  PartLight light = learned();
+  double gain = 1.0;
+  int changes = 0;
+  for (int i = 0; i < 30; ++i) {
+    gain *= 0.99;
+    changes += light.found(1, in_light(gain, gain, gain)) ? 1 : 0;
+  }
+  EXPECT_GE(changes, 3);
+  EXPECT_NEAR(light.of(1)->r, 0.8 * gain, 0.08 * 0.8);
+}
+
+// A lamp that is switched is half bright in the image in between; a light that goes on changing is another one in each.
+TEST(PartLight, IsSupposedAgainWhereTheLastOneDidNotExplainIt) {
+  PartLight light = learned();
+  ASSERT_TRUE(light.suppose(1, in_light(0.9, 0.9, 0.9)));
+  light.take_back(1);
+  EXPECT_FALSE(light.suppose(1, in_light(0.9, 0.9, 0.9))) << "it was looked for under that one";
+  ASSERT_TRUE(light.suppose(1, in_light(0.6, 0.6, 0.6)));
+  EXPECT_NEAR(light.of(1)->r, 0.48, 1e-9);
+  light.found(1, in_light(0.6, 0.6, 0.6));
+  EXPECT_TRUE(light.suppose(1, in_light(0.54, 0.54, 0.54))) << "found in between";
+}
+
 TEST(PartLight, IsTheOneBeforeWhereLessIsSeenUnderTheNew) {
   PartLight light = learned();
   ASSERT_TRUE(light.found(1, in_light(0.7, 0.7, 0.7)));

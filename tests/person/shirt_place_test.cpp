@@ -1,5 +1,7 @@
 // A shirt at its place: where its blob is no guide, what that teaches, and what vetoes it.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <gtest/gtest.h>
@@ -148,6 +150,42 @@ TEST(ShirtPlace, IsFoundInTheLightOfLearningAfterALongLoss) {
     if (tracker.update({standing(kRed).view()}).person == 1) found_after = image;
   ASSERT_TRUE(found_after);
   EXPECT_LE(*found_after, 4);
+}
+
+// Cloth in folds, from what faces the lamp to what turns away from it, in a light of one gain.
+Picture in_folds(const Rgb& shirt, double gain) {
+  constexpr double kFold = 16.0, kDarkest = 0.82;
+  Picture picture{{gain * kWall.r, gain * kWall.g, gain * kWall.b}};
+  for (double x = 0.0; x < kShirtBox.width; x += 2.0) {
+    const double all = gain * (1.0 - (1.0 - kDarkest) * std::abs(std::remainder(x, kFold)) * 2.0 / kFold);
+    picture.fill({kShirtBox.x + x, kShirtBox.y, 2.0, kShirtBox.height}, {all * shirt.r, all * shirt.g, all * shirt.b});
+  }
+  return picture;
+}
+
+// A lamp that is dimmed slowly, and one that is switched while the shutter is open: half as much light is .73 of a channel as the camera codes it.
+TEST(ShirtPlace, IsFollowedWhereTheLightChangesByTwo) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  const Rgb shirts[] = {kRed, kBlue, {0.06, 0.44, 0.56}, {0.55, 0.42, 0.05}};
+  for (const Rgb& shirt : shirts) {
+    for (const bool slowly : {true, false}) {
+      for (const double to : {0.73, 1.3}) {
+        PersonTracker tracker(parameters);
+        const Picture picture = in_folds(shirt, 1.0);
+        for (int image = 0; image < 20 && !tracker.shirts().knows(1); ++image)
+          tracker.update({picture.view(), face_of(1)});
+        for (int image = 0; image < 20; ++image) tracker.update({picture.view()});
+        int lost = 0;
+        constexpr int kImages = 60;
+        for (int image = 1; image <= 2 * kImages; ++image) {
+          const double done = slowly ? std::min(1.0, double(image) / kImages) : image == 1 ? 0.4 : 1.0;
+          lost += tracker.update({in_folds(shirt, 1.0 + done * (to - 1.0)).view()}).person == 1 ? 0 : 1;
+        }
+        EXPECT_LE(lost, kImages / 10) << shirt.r << ' ' << shirt.g << ' ' << shirt.b << (slowly ? " slowly to " : " at once to ") << to;
+      }
+    }
+  }
 }
 
 // A jacket of the colour of the road behind it, and a red shirt below it.

@@ -23,6 +23,14 @@ color::Light change_of(const imaging::Rgb& now, const imaging::Rgb& then) {
 }
 
 constexpr color::Light kNoChange{1.0, 1.0, 1.0};
+constexpr double kMeasured = 0.04;  // how well two means are alike where nothing changes
+
+// What a part hardly reflects says nothing about the light: its coding is coarser than a change, and other channels leak into it.
+color::Light where_bright(const color::Light& change, const imaging::Rgb& then, const color::Light& beside) {
+  constexpr double kDim = 0.15;  // of a channel
+  const auto either = [](double own, double level, double other) { return level < kDim ? other : own; };
+  return {either(change.r, then.r, beside.r), either(change.g, then.g, beside.g), either(change.b, then.b, beside.b)};
+}
 
 }  // namespace
 
@@ -46,9 +54,8 @@ void PartLight::keep(std::span<const Label> people) {
 
 // Nothing: no light, or none that changed both alike, explains what is seen; or nothing has changed.
 std::optional<color::Light> PartLight::light_by(const Part& part, const PartColors& now) const {
-  constexpr double kMeasured = 0.04;  // how well two means are alike where nothing changes
-  const color::Light change = change_of(now.part, part.colors->part);
   const color::Light beside = change_of(now.beside, part.colors->beside);
+  const color::Light change = where_bright(change_of(now.part, part.colors->part), part.colors->part, beside);
   const std::array log_change{std::log(change.r), std::log(change.g), std::log(change.b)};
   const std::array log_beside{std::log(beside.r), std::log(beside.g), std::log(beside.b)};
   double largest = 0.0, apart = 0.0;
@@ -66,20 +73,24 @@ std::optional<color::Light> PartLight::light_by(const Part& part, const PartColo
   return plausible ? std::optional(light) : std::nullopt;
 }
 
-// While the shirt looks as it did the light is the same, whatever it stands before by now.
+// While the shirt looks as it did the light is the same, whatever it stands before by now. What has changed slowly with the shirt is the light, which is known
+// when it has changed enough.
 bool PartLight::found(Label person, const PartColors& colors) {
   Part* part = find(person);
   if (part == nullptr) return false;
   if (!part->colors || part->before || part->other) part->colors = colors;
   part->before.reset();
   part->other.reset();
+  part->tried.reset();
   if (const auto light = light_by(*part, colors)) {
     part->last = std::exchange(part->used, *light);
     part->colors = colors;
     return true;
   }
-  if (!differs(change_of(colors.part, part->colors->part), kNoChange, parameters_.min_change / 2))
-    part->colors->beside = colors.beside;
+  const color::Light change = change_of(colors.part, part->colors->part);
+  const bool looks_alike = !differs(change, kNoChange, parameters_.min_change / 2);
+  if (looks_alike && differs(change_of(colors.beside, part->colors->beside), change, kMeasured))
+    part->colors->beside = color::without_light(colors.beside, change);
   return false;
 }
 
@@ -100,9 +111,9 @@ bool PartLight::suppose(Label person, const PartColors& now) {
   Part* part = find(person);
   if (part == nullptr || !part->colors) return false;
   const auto light = light_by(*part, now);
-  if (!light) return false;
+  if (!light || (part->tried && !differs(*light, *part->tried, parameters_.min_change / 2))) return false;
   part->before = part->used;
-  part->used = *light;
+  part->used = part->tried.emplace(*light);
   return true;
 }
 

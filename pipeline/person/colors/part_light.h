@@ -62,7 +62,8 @@ class PartLight {
   /// It is seen as well under the light that found() said has come: that one stays.
   void confirm(Label person);
   /// The part was lost, and its last place looks like this.
-  /// \return whether it is to be looked for under another light, which of() tells; false where no light explains it.
+  /// \return whether it is to be looked for under another light, which of() tells; false where no light explains it, or the one that was supposed since it
+  ///         was lost.
   bool suppose(Label person, const PartColors& now);
   /// What suppose() said was wrong.
   void take_back(Label person);
@@ -80,6 +81,7 @@ class PartLight {
     color::Light used{};                   // under which it is looked for
     std::optional<PartColors> colors{};    // under `used`
     std::optional<color::Light> before{};  // suppose(): what was used until then
+    std::optional<color::Light> tried{};   // suppose(): since it was found last
     std::optional<color::Light> last{};    // found(): what was used until the light changed
     std::optional<color::Light> other{};   // turn(): what is not in use now
   };

@@ -1,7 +1,6 @@
 #include "pipeline/person/colors/person_colors.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace cgsr::person {
@@ -24,12 +23,12 @@ color::Light assumed_light(std::span<const imaging::Rgb> positive, double assume
 }
 
 // The codes of an image are about 3 bins apart, 0.046 of a texture in the light that is assumed at learning. Under that light they are the samples' own; under any other
-// they lie between them, and the further apart the darker it is.
+// a texture is half a step from its sample's code then and half a step from its own now, and those steps are the larger the darker it is.
 int reach_under(const color::Light& light, const color::Light& learned) {
   if (light.r == learned.r && light.g == learned.g && light.b == learned.b) return 1;
   constexpr double kHalfStep = 1.6;  // bins
   const double widest = std::max({learned.r / light.r, learned.g / light.g, learned.b / light.b});
-  return std::clamp(static_cast<int>(std::ceil(kHalfStep * widest)), 2, 4);
+  return std::clamp(static_cast<int>(kHalfStep + kHalfStep * widest), 3, 5);
 }
 
 /// The colours of all codes: made once, with the first map, of nobody, before the first image.
@@ -149,7 +148,8 @@ void PersonColors::find_codes(const Person& person, const color::Light& light,
                               std::vector<std::uint16_t>& codes) const {
   codes.clear();
   const int reach = reach_under(light, person.light);
-  const double min_share = parameters_.min_share * std::pow((2.0 * reach + 1.0) / 3.0, 3);  // by the colours looked at
+  // By the colours looked at: those of cloth in one light lie along a line, from its folds to where it faces the lamp.
+  const double min_share = parameters_.min_share * (2.0 * reach + 1.0) / 3.0;
   const std::vector<std::uint8_t> near = person.positive.met_nearby(reach);
   if (near.empty()) return;
   const std::vector<imaging::Rgb>& colors = colors_of_codes();

@@ -30,12 +30,15 @@ double camera_area(const Blob& blob) {
   return double(blob.area_px) * kFactor * kFactor;
 }
 
-// In a light that changes a blob loses its darker sides first: the shirt is as large as it was, and gets smaller slowly.
+// In a light that changes a blob loses its darker sides first: the shirt is as large as it was, and gets smaller slowly. It is not elsewhere for that: it moves
+// as far as what is seen of it leads out of where it was.
 Box settled(const Box& before, const Box& now) {
   constexpr double kShrinks = 0.998;  // in an image
   const double width = std::max(now.width, kShrinks * before.width);
   const double height = std::max(now.height, kShrinks * before.height);
-  return {now.x + (now.width - width) / 2, now.y + (now.height - height) / 2, width, height};
+  const double x = before.x + (before.width - width) / 2, y = before.y + (before.height - height) / 2;
+  return {std::clamp(x, now.x + now.width - width, now.x), std::clamp(y, now.y + now.height - height, now.y), width,
+          height};
 }
 
 // The middle of a shirt, and what is to its left and right. All pixels count: those that have the shirt's colours in a light that changes have changed least.
@@ -329,8 +332,8 @@ void ShirtClassifier::check_light() {
   map_is_due_ = true;
 }
 
-// The light may have changed at once: then the place where the shirt was has, in the new light, the shirt's colours. This is supposed once for each loss.
-// After a long one the light of its last place may not be that of where it comes back: it is looked for under that of learning in turns.
+// The light may have changed at once, or go on changing: then the place where the shirt was has, in the new light, the shirt's colours. This is supposed for
+// each light once. After a long loss the light of its last place may not be that of where it comes back: it is looked for under that of learning in turns.
 void ShirtClassifier::lost(const PersonImage& input) {
   if (!person_) return;
   if (supposed_ && !map_is_due_) {  // it was looked for in that light
@@ -340,7 +343,7 @@ void ShirtClassifier::lost(const PersonImage& input) {
   }
   constexpr int kTurn = 2;  // images
   if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && light_.turn(*person_)) map_is_due_ = true;
-  if (missed_ != 1) return;
+  if (missed_ >= kLongLoss || map_is_due_) return;
   const auto now = colors_of(input.image, place_);
   if (!now || !light_.suppose(*person_, *now)) return;
   before_light_.reset();

@@ -59,19 +59,28 @@ Counts count(const std::vector<Seen>& seen, const Case& one) {
   return counts;
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto found = text.find(what);
-  if (found != std::string::npos) text.replace(found, what.size(), by);
-  return text;
-}
-
-void write_scene(const TableFolder& folder, const std::string& arena, const Case& one) {
-  std::string world = replaced(arena, "bounce = 0.006\n", "bounce = 0.006\n" + one.lamp);
-  if (one.white_wall) world = replaced(world, "albedo = [0.62, 0.66, 0.68]", "albedo = [0.80, 0.80, 0.79]");
-  world = replaced(world, "lumens = 250.0", fmt::format("lumens = {:.1f}", one.face_light_lm));
+/// The arena in this case: its light, walls and fill light. Errors: the arena's text has no such place any longer.
+Result<std::string> world_of(std::string world, const Case& one) {
+  const auto replaced = [&world](const std::string& what, const std::string& by) {
+    const auto found = world.find(what);
+    if (found == std::string::npos) return false;
+    world.replace(found, what.size(), by);
+    return true;
+  };
+  const std::string lamp = "bounce = 0.006\n", wall = "albedo = [0.62, 0.66, 0.68]", light = "lumens = 250.0";
+  const auto none = [](const std::string& what) {
+    return fail(fmt::format("people-cases: no '{}' in the world of Who Is Who, where this case would change it", what));
+  };
+  if (!replaced(lamp, lamp + one.lamp)) return none("bounce = 0.006");
+  if (one.white_wall && !replaced(wall, "albedo = [0.80, 0.80, 0.79]")) return none(wall);
+  if (!replaced(light, fmt::format("lumens = {:.1f}", one.face_light_lm))) return none(light);
   for (std::size_t i = 0; i < one.figures.size(); ++i)
     world += text_of(one.figures[i], fmt::format("figure {}", i + 1));
-  std::ofstream(folder / "world.toml") << world << one.ambient;
+  return world + one.ambient;
+}
+
+void write_scene(const TableFolder& folder, const std::string& world, const Case& one) {
+  std::ofstream(folder / "world.toml") << world;
   std::ofstream(folder / "scenario.toml") << fmt::format(
       "world = \"world.toml\"\nrobot = \"robot\"\nends_at_s = {}\n[[line]]\nname = \"arming\"\ninput = true\n"
       "[[line]]\nname = \"face light\"\n",
@@ -142,7 +151,9 @@ Result<Report> people_cases(const Setting& setting) {
       const Case& one = drawn->first;
       redrawn += drawn->second;
       names[i] = one.name;
-      write_scene(folder, *arena, one);
+      const auto world = world_of(*arena, one);
+      if (!world) return tl::unexpected(world.error());
+      write_scene(folder, *world, one);
       const auto seen = watch(folder, shipped, seed, one.robot, kTraining_s);
       if (!seen) return tl::unexpected(seen.error());
       counts[i].push_back(count(*seen, one));
