@@ -77,5 +77,26 @@ TEST(FaceVotes, WhatWasSeenLongAgoFades) {
   EXPECT_NEAR(face.match()->confidence, votes(16, 4, 0.52).match()->confidence, 0.01);
 }
 
+// Who is nearest to one person in both comparisons is no other; where the nearest changes nobody is ruled out.
+TEST(FaceVotes, RuleOutOthersAsSurelyAsTheLeastSure) {
+  const auto like = [](Label nearest, double rules_out) {
+    FaceMatch match = answer(std::nullopt, 0.55);
+    match.nearest = nearest;
+    match.rules_out = rules_out;
+    return match;
+  };
+  FaceVotes face;
+  face.add(like(2, 0.9), 2);
+  EXPECT_FALSE(face.match());
+  face.add(like(2, 0.85), 2);
+  ASSERT_TRUE(face.match());
+  EXPECT_DOUBLE_EQ(face.match()->rules_out, 0.85);
+  face.add(like(1, 0.95), 2);
+  EXPECT_DOUBLE_EQ(face.match()->rules_out, 0.0);
+  face.add(like(1, 0.95), 2);
+  face.add(like(1, 0.83), 2);
+  EXPECT_DOUBLE_EQ(face.match()->rules_out, 0.83) << "of the last three";
+}
+
 }  // namespace
 }  // namespace cgsr::person

@@ -138,6 +138,22 @@ TEST(PartPlace, IsOfTheImageAlone) {
   EXPECT_FALSE(place.follow({}, kPart));
 }
 
+TEST(PartPlace, HasTheSizeThatItIsToldWithinBounds) {
+  PartPlace place = begun(among_others(kPlace));
+  place.resize(1.04);
+  ASSERT_TRUE(place.place());
+  EXPECT_NEAR(place.place()->width, 1.04 * kPlace.width, 1e-9);
+  EXPECT_NEAR(place.place()->height, 1.04 * kPlace.height, 1e-9);
+  EXPECT_LT(distance(*place.place(), kPlace), 1e-9);
+  for (int image = 0; image < 100; ++image) place.resize(1.04);
+  EXPECT_NEAR(place.place()->width, 3.0 * kPlace.width, 1e-9);
+  for (int image = 0; image < 100; ++image) place.resize(0.96);
+  EXPECT_NEAR(place.place()->width, 0.5 * kPlace.width, 1e-9);
+  PartPlace never;
+  never.resize(1.04);
+  EXPECT_FALSE(never.place());
+}
+
 TEST(PartPlace, IsNoneWhereItIsNotBegunOrNotEnabled) {
   const Labels labels = among_others(kPlace);
   PartPlace never;

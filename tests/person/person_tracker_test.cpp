@@ -143,6 +143,31 @@ void meet_a_stranger_in_red(PersonTracker& tracker) {
 }
 
 // Faces are looked for in every other image: in between his shirt does not name the person again.
+// A stranger who resembles somebody else who is enrolled: whether it is that one is open, that it is not the person whose shirt it is, is not.
+TEST(PersonTracker, IsNotNamedByTheShirtWhereTheFaceIsSurelyNoneOfThePersons) {
+  for (const Label nearest : {1, 2}) {
+    PersonTracker tracker;
+    learn(tracker, 1, kRed);
+    const Picture picture = standing(kRed);
+    while (!tracker.face_is_due()) tracker.update({picture.view()});
+    FaceSighting face = face_of(std::nullopt, 0.6);
+    face.match.nearest = nearest;
+    face.match.rules_out = 0.85;
+    const auto sighting = tracker.update({picture.view(), face, 1});
+    EXPECT_EQ(sighting.person, nearest == 1 ? 1 : kStranger);
+  }
+}
+
+// The trunk that is followed can lie in a part of the shirt: a face above all of it is above it.
+TEST(IsAbove, OfAFaceOverTheTrunk) {
+  constexpr Box kFace{300, 150, 60, 60};
+  EXPECT_TRUE(is_above(kFace, {270, 230, 120, 190}));
+  EXPECT_TRUE(is_above(kFace, {290, 290, 90, 130})) << "its lower part";
+  EXPECT_FALSE(is_above(kFace, {270, 420, 120, 60})) << "below the trunk";
+  EXPECT_FALSE(is_above(kFace, {400, 230, 120, 190})) << "beside it";
+  EXPECT_FALSE(is_above(kFace, {270, 100, 120, 190})) << "before it";
+}
+
 TEST(PersonTracker, AStrangerStaysOneUntilFacesAreLookedForAgain) {
   PersonTracker tracker;
   const Picture picture = standing(kRed);

@@ -152,6 +152,33 @@ TEST(ShirtPlace, IsFoundInTheLightOfLearningAfterALongLoss) {
   EXPECT_LE(*found_after, 4);
 }
 
+// A robot drives up to somebody who stands with the back to it: the trunk between the sleeves is its guide, which is not left small in a corner of the shirt.
+TEST(ShirtPlace, GrowsWithAShirtThatComesNearer) {
+  PersonTrackerParameters parameters;
+  parameters.face_color.enabled = false;
+  PersonTracker tracker(parameters);
+  constexpr double kFace_px = 24.0;
+  const auto with_sleeves = [](double size) {
+    Picture picture;
+    const double middle = 160.0 - 20.0 * (size - 1.0), top = 95.0 - 20.0 * size;  // and he goes to the side
+    picture.fill({middle - 27.0 * size, top, 54.0 * size, 80.0 * size}, kRed);
+    picture.fill({middle - 42.0 * size, top, 84.0 * size, 40.0 * size}, kRed);
+    return picture;
+  };
+  FaceSighting face = face_of(1);
+  face.box = {160.0 - kFace_px / 2, 46.0, kFace_px, kFace_px};
+  const Picture first = with_sleeves(1.0);
+  for (int image = 0; image < 30; ++image) tracker.update({first.view(), face});
+  double size = 1.0;
+  PersonSighting sighting;
+  for (int image = 0; image < 80; ++image) {
+    size *= 1.008;
+    sighting = tracker.update({with_sleeves(size).view()});
+    ASSERT_EQ(sighting.person, 1) << image;
+  }
+  EXPECT_NEAR(sighting.face_px, size * kFace_px, 0.15 * size * kFace_px);
+}
+
 // Cloth in folds, from what faces the lamp to what turns away from it, in a light of one gain.
 Picture in_folds(const Rgb& shirt, double gain) {
   constexpr double kFold = 16.0, kDarkest = 0.82;

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kStrip = 0.5;        // width of the strip around a place, in its shorter side
 constexpr double kLargestStep = 1.3;  // in sides, of the reach after images without the part
+constexpr double kSmallest = 0.5, kLargest = 3.0;  // of the first width
 constexpr int kCells = 24;            // of the shorter side, where a place is large
 constexpr int kSteps = 16;            // to each side of a search, at most: its cost is bounded
 
@@ -94,18 +95,24 @@ void PartPlace::begin(const LabelImage& image, std::uint16_t label, const Box& p
   lost_ = 0;
 }
 
+// In a corner of something much larger it would stay as small as it is: growing shows no more contrast there.
+void PartPlace::resize(double ratio) {
+  if (!place_) return;
+  const double to = std::clamp(ratio * place_->width, kSmallest * first_width_, kLargest * first_width_);
+  place_ = moved(*place_, 0.0, 0.0, to / place_->width);
+}
+
 // In steps of whole cells about where it was, of its size and a little smaller and larger.
 PartPlace::Found PartPlace::search(double reach) const {
-  constexpr double kFar = 0.1;                 // what a step of its own size costs, in contrast
-  constexpr double kResized = 0.03;            // what another size costs: it changes slowly
-  constexpr double kLeast = 0.5, kMost = 2.0;  // of the first width
+  constexpr double kFar = 0.1;       // what a step of its own size costs, in contrast
+  constexpr double kResized = 0.03;  // what another size costs: it changes slowly
   const int steps = static_cast<int>(reach / cell_);
   const double far = kFar * cell_ * cell_ / place_->area();
   Found found;
   double best = -2.0;
   for (const double scale : {1.0, 0.95, 1.05}) {
     const double width = scale * place_->width;
-    if (width < kLeast * first_width_ || width > kMost * first_width_) continue;
+    if (width < kSmallest * first_width_ || width > kLargest * first_width_) continue;
     const Cells cells = cells_of(moved(*place_, 0.0, 0.0, scale));
     for (int row = -steps; row <= steps; ++row) {
       for (int column = -steps; column <= steps; ++column) {
@@ -127,11 +134,11 @@ std::optional<Box> PartPlace::follow(const LabelImage& image, std::uint16_t labe
   constexpr double kUsual = 0.05;    // share of an image in what is usual
   constexpr double kFollows = 0.2;   // share of a change of size that is followed in an image
   constexpr double kGrows = 0.3;     // of the reach, with each image without it
-  constexpr double kLargest = 1.05;  // of what is tried, in its size
+  constexpr double kTried = 1.05;  // in its size, at most
   if (!place_ || image.empty()) return std::nullopt;
   const double side = std::sqrt(place_->area());
   const double reach = std::min(kLargestStep, parameters_.reach * (1.0 + kGrows * lost_)) * side;
-  const double margin = reach + kLargest * strip_of(*place_) + (kLargest - 1.0) * side;
+  const double margin = reach + kTried * strip_of(*place_) + (kTried - 1.0) * side;
   cell_ = cell_for(*place_, reach);
   count(image, label, grown(*place_, margin, margin));
   const auto [step, scale] = search(reach);

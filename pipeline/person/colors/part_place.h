@@ -48,6 +48,9 @@ class PartPlace {
   void begin(const LabelImage& image, std::uint16_t label, const Box& place);
   void end() { place_.reset(); }
 
+  /// What the part is in looks so many times as large as an image before: so does the part.
+  void resize(double ratio);
+
   /// Looks for the part in the next image. \return where it is; nothing: not found, given up, or never begun.
   /// Cost: .3 million instructions, at most .8.
   std::optional<Box> follow(const LabelImage& image, std::uint16_t label);

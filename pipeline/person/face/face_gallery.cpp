@@ -98,11 +98,14 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
       second = std::min(second, away.distance);
     }
   }
+  const double lead = second - match.distance;
   if (compared <= kEnoughOthers) second = std::min(second, parameters_.typical_stranger);
   match.margin = match.nearest ? second - match.distance : -1.0;
   if (match.margin > parameters_.min_margin) match.label = match.nearest;
   const double scale = std::max(parameters_.min_margin, 1e-6);
   match.confidence = 1.0 - 0.5 * std::exp(-std::abs(match.margin - parameters_.min_margin) / scale);
+  // The margin of everybody else is below -lead.
+  if (match.nearest) match.rules_out = 1.0 - 0.5 * std::exp(-(lead + parameters_.min_margin) / scale);
   return match;
 }
 

@@ -25,11 +25,12 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
   votes_.front() = answer;
   vote_count_ = std::min(vote_count_ + 1, kVotes);
   int agreeing = 0;
-  double evidence = 0.0;
+  double evidence = 0.0, rules_out = answer.rules_out;
   for (const FaceMatch& vote : std::span(votes_).first(vote_count_)) {
     if (vote.label != answer.label) continue;
     ++agreeing;
     evidence += evidence_of(vote.confidence);
+    rules_out = vote.nearest == answer.nearest ? std::min(rules_out, vote.rules_out) : 0.0;
   }
   if (match_ && match_->label == answer.label) {
     comparisons_ = std::min(comparisons_ + 1, kMaxComparisons);
@@ -44,6 +45,7 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
   }
   match_ = answer;
   match_->confidence = 1.0 - 0.5 * std::exp(-evidence_ * std::sqrt(comparisons_));
+  match_->rules_out = agreeing >= min_agreeing ? rules_out : 0.0;
 }
 
 }  // namespace cgsr::person

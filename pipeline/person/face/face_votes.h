@@ -10,6 +10,8 @@ namespace cgsr::person {
 
 /// Whose one face is by several comparisons: the newest answer decides with those of the last three that agree with it. Ours: 6.2.1 compares once.
 ///
+/// Others than the nearest are ruled out as surely as by the least sure of those answers, which have to be nearest to the same person.
+///
 /// A comparison's confidence is 1 - exp(-x) / 2, x its distance from the threshold (FaceGallery::identify). The mean of n comparisons is surer by the root
 /// of n. Those of one face are not independent of each other: n is at most 16, and a comparison that contradicts halves it.
 class FaceVotes {

@@ -8,15 +8,6 @@ namespace {
 
 constexpr std::size_t kMarker = 0, kFace = 1, kFaceColor = 2, kShirt = 3;  // places among the members
 
-// Blobs are found in pixels of ColorLabels::kFactor: the last ones may end before the border.
-bool is_cut_in_height(const Box& box, const ImageView& image) {
-  return box.y <= 0.0 || box.y + box.height > image.height_px - ColorLabels::kFactor;
-}
-
-bool is_cut_in_width(const Box& box, const ImageView& image) {
-  return box.x <= 0.0 || box.x + box.width > image.width_px - ColorLabels::kFactor;
-}
-
 void follow_ratio(double& known, double now) {
   constexpr double kNew = 0.1;  // share of a new ratio
   known = known > 0.0 ? (1.0 - kNew) * known + kNew * now : now;
@@ -42,7 +33,10 @@ std::string_view to_string(PersonSource source) {
 
 std::optional<Classification> FaceClassifier::classify(const PersonImage& input) {
   if (!input.face) return std::nullopt;
-  return Classification{input.face->match.label.value_or(kStranger), input.face->match.confidence};
+  const FaceMatch& match = input.face->match;
+  const bool of_another = input.interest && match.label != input.interest && match.nearest != input.interest;
+  return Classification{match.label.value_or(kStranger),
+                        of_another ? std::max(match.confidence, match.rules_out) : match.confidence};
 }
 
 std::optional<Classification> MarkerClassifier::classify(const PersonImage& input) {
@@ -58,8 +52,11 @@ Box face_above(const Box& shirt, double face_px) {
 
 bool is_above(const Box& face, const Box& shirt) {
   constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
+  constexpr double kOfTrunk = 0.5;   // of the shirt, where a part of a trunk is followed
   const double middle = face.x + face.width / 2, above = shirt.y - face.y;
-  return middle >= shirt.x && middle <= shirt.x + shirt.width && above >= 0.0 && above <= kMostAbove * face.width;
+  if (middle < shirt.x || middle > shirt.x + shirt.width || above < 0.0) return false;
+  return above <= kMostAbove * face.width ||
+         intersection(trunk_below(face), shirt).area() >= kOfTrunk * shirt.area();
 }
 
 PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -97,6 +98,17 @@ bool is_in_view(const Box& shirt, const ImageView& image) {
   constexpr double kMinInView = 0.5;  // of its area
   return intersection(shirt, {0.0, 0.0, double(image.width_px), double(image.height_px)}).area() >=
          kMinInView * shirt.area();
+}
+
+/// How many times as large a blob is as it was: by the side that has changed less, 1 where one has grown and the other has not; nothing where something else was
+/// joined or torn off. Of one that the image cuts in height the width says that it is nearer.
+std::optional<double> growth_of(const Box& before, const Box& now, const ImageView& image) {
+  constexpr double kLargest = 0.08;
+  const bool is_high = is_cut_in_height(before, image) || is_cut_in_height(now, image);
+  if (before.empty() || is_cut_in_width(before, image) || is_cut_in_width(now, image)) return std::nullopt;
+  const double wider = now.width / before.width, higher = is_high ? std::max(1.0, wider) : now.height / before.height;
+  if (std::abs(wider - 1.0) > kLargest || std::abs(higher - 1.0) > kLargest) return std::nullopt;
+  return higher >= 1.0 ? std::min(higher, std::max(1.0, wider)) : std::max(higher, std::min(1.0, wider));
 }
 
 }  // namespace
@@ -196,6 +208,18 @@ bool ShirtClassifier::is_scrap_elsewhere(const PersonImage& input, Label person)
   return box_.area() < kSmall * place_.area() && intersection(box_, place_).empty();
 }
 
+// Who comes nearer looks larger, and so does the blob that holds the trunk, whatever else is in it. It is compared with how it was when it changed last, for in
+// an image it changes by less than a pixel.
+void ShirtClassifier::follow_size(const ImageView& image, std::optional<Label> by_blob) {
+  constexpr double kHolds = 0.8;  // of the trunk
+  const auto& place = followed_.place();
+  const bool holds = by_blob && by_blob == followed_person_ && place &&
+                     intersection(in_labels(box_), *place).area() >= kHolds * place->area();
+  const auto growth = holds ? growth_of(holder_, box_, image) : std::nullopt;
+  if (growth) followed_.resize(*growth);
+  if (growth != 1.0) holder_ = holds ? box_ : Box{};
+}
+
 // Where a face or a marker is seen it says where the shirt is. What is left of a covered shirt, or has grown together with something else, does not say how
 // far away it is; how large it was where it was followed does. Beside a passer-by it is followed on; where the head of somebody else is known, that one is
 // named.
@@ -206,6 +230,7 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
     followed_.end();
     return by_blob;
   }
+  follow_size(input.image, by_blob);
   const auto place = followed_.follow(labels_.of(ColorPart::kShirt), label_of(*followed_person_));
   if (input.head && input.head->person != followed_person_) return by_blob;
   if (!place) {

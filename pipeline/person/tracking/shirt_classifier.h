@@ -110,6 +110,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] bool is_scrap_elsewhere(const PersonImage& input, Label person) const;
   [[nodiscard]] bool is_passer_by(const Teacher& teacher) const;
   void follow_from(const Teacher& teacher);
+  void follow_size(const ImageView& image, std::optional<Label> by_blob);
   void learn_at_place(const PersonImage& input, const Box& trunk);
   [[nodiscard]] std::uint16_t label_of(Label person) const;
   void found(const PersonImage& input, Label person);
@@ -137,6 +138,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   Box place_;
   PartPlace followed_;                    // the trunk, in pixels of the labels' image
   std::optional<Label> followed_person_;  // whose
+  Box holder_;  // the blob that holds the trunk, when it changed last; empty: none does
   bool is_sized_by_place_ = false;        // how far away the shirt is says the trunk, not its blob
   int since_place_learned_ = 0;
   int missed_ = 0;         // images since then; 0: it was found in the last one

@@ -42,4 +42,13 @@ Box shirt_window(const Box& head, int image_height_px) {
   return {middle - kBeside * head.width, top, 2.0 * kBeside * head.width, std::max(0.0, image_height_px - top)};
 }
 
+// Blobs are found in pixels of ColorLabels::kFactor: the last ones may end before the border.
+bool is_cut_in_height(const Box& blob, const ImageView& image) {
+  return blob.y <= 0.0 || blob.y + blob.height > image.height_px - ColorLabels::kFactor;
+}
+
+bool is_cut_in_width(const Box& blob, const ImageView& image) {
+  return blob.x <= 0.0 || blob.x + blob.width > image.width_px - ColorLabels::kFactor;
+}
+
 }  // namespace cgsr::person

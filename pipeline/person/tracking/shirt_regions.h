@@ -23,4 +23,8 @@ std::array<Box, 2> beside_trunk(const Box& trunk);
 ///     below is something else. Generous: a head is turned, a shirt partly covered. Ours (6.3.1, relative position).
 Box shirt_window(const Box& head, int image_height_px);
 
+/// Whether a blob of the labels' image ends at the image's upper or lower border, or at its left or right one: it may go on beyond.
+bool is_cut_in_height(const Box& blob, const ImageView& image);
+bool is_cut_in_width(const Box& blob, const ImageView& image);
+
 }  // namespace cgsr::person
