@@ -9,7 +9,7 @@
 namespace cgsr::person {
 namespace {
 
-constexpr std::size_t kEnoughOthers = 4;
+constexpr std::size_t kEnoughOthers = 4, kHardlyAny = 2;
 
 using PointDistances = std::array<double, kViewSide * kViewSide>;
 
@@ -100,6 +100,7 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
   }
   const double lead = second - match.distance;
   if (compared <= kEnoughOthers) second = std::min(second, parameters_.typical_stranger);
+  if (compared <= kHardlyAny) second = std::min(second, parameters_.nearest_stranger);
   match.margin = match.nearest ? second - match.distance : -1.0;
   if (match.margin > parameters_.min_margin) match.label = match.nearest;
   const double scale = std::max(parameters_.min_margin, 1e-6);

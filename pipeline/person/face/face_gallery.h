@@ -13,6 +13,7 @@ namespace cgsr::person {
 struct FaceMatchParameters {
   double min_margin = 0.0185;
   double typical_stranger = 0.105;
+  double nearest_stranger = 0.0885;
   int min_views = 2;
   int max_views = 6;
   int max_learned_views = 2;
@@ -23,8 +24,11 @@ struct FaceMatchParameters {
     visit.number("min_margin", self.min_margin, Range{0.0, 0.5}, "",
                  "How much nearer a face must be to one person than to every other, else it is a stranger's.");
     visit.number("typical_stranger", self.typical_stranger, Range{0.01, 1.0}, "",
-                 "How far a stranger's face is from an enrolled one, typically: stands in for the others where fewer "
-                 "than five people are enrolled.");
+                 "How far a stranger's face is from an enrolled one, typically: stands in for the others where three "
+                 "or four people are enrolled.");
+    visit.number("nearest_stranger", self.nearest_stranger, Range{0.01, 1.0}, "",
+                 "How far it is where it is most alike: stands in for them where one or two are, for there is nobody to "
+                 "compare with.");
     visit.number("min_views", self.min_views, Range{1, 20}, "",
                  "The number of views from which on a person can be named.");
     visit.number("max_views", self.max_views, Range{1, 50}, "",
