@@ -125,7 +125,9 @@ TEST(PersonColors, MapEveryCodeByItsShareHoweverFewAreLookedAt) {
 TEST(PersonColors, FindPlainClothInALightThatIsALittleAnother) {
   PersonColors colors;
   std::vector<Rgb> cloth;
-  const auto at = [](double shade, double gain) { return Rgb{0.06 * shade * gain, 0.65 * shade * gain, 0.18 * shade * gain}; };
+  const auto at = [](double shade, double gain) {
+    return Rgb{0.06 * shade * gain, 0.65 * shade * gain, 0.18 * shade * gain};
+  };
   const auto recorded = [](const Rgb& color) {
     const auto yuv = imaging::yuv_of_rgb(color);
     const auto whole = [](double value) { return static_cast<int>(value + 0.5); };

@@ -98,5 +98,21 @@ TEST(FaceVotes, RuleOutOthersAsSurelyAsTheLeastSure) {
   EXPECT_DOUBLE_EQ(face.match()->rules_out, 0.83) << "of the last three";
 }
 
+// A face that is as far as the threshold: it keeps the name that it has until one is clearly wrong.
+TEST(FaceVotes, AreNotContradictedAtTheThreshold) {
+  for (const std::optional<Label> first : {std::optional<Label>(1), std::optional<Label>()}) {
+    const std::optional<Label> other = first ? std::nullopt : std::optional<Label>(1);
+    FaceVotes face = votes(2, first, 0.53);
+    const double before = face.match()->confidence;
+    for (int i = 0; i < 10; ++i) face.add(answer(other, 0.54), 2);
+    EXPECT_EQ(face.match()->label, first);
+    EXPECT_FALSE(face.contradicted());
+    EXPECT_DOUBLE_EQ(face.match()->confidence, before);
+    face.add(answer(other, 0.6), 2);
+    face.add(answer(other, 0.6), 2);
+    EXPECT_EQ(face.match()->label, other);
+  }
+}
+
 }  // namespace
 }  // namespace cgsr::person

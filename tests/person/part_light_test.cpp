@@ -97,7 +97,8 @@ TEST(PartLight, IsToldByTheChannelsThatTheShirtReflects) {
   PartLight other;
   other.learn(1, kAssumed);
   other.found(1, {kCyan, kBeside});
-  EXPECT_FALSE(other.suppose(1, {{0.06, 0.7 * kCyan.g, 0.5 * kCyan.b}, beside})) << "one that it reflects has changed alone";
+  EXPECT_FALSE(other.suppose(1, {{0.06, 0.7 * kCyan.g, 0.5 * kCyan.b}, beside}))
+      << "one that it reflects has changed alone";
 }
 
 // A change of a percent in an image: what is beside the shirt keeps changing with it until it is enough for another light.

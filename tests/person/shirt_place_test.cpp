@@ -209,7 +209,8 @@ TEST(ShirtPlace, IsFollowedWhereTheLightChangesByTwo) {
           const double done = slowly ? std::min(1.0, double(image) / kImages) : image == 1 ? 0.4 : 1.0;
           lost += tracker.update({in_folds(shirt, 1.0 + done * (to - 1.0)).view()}).person == 1 ? 0 : 1;
         }
-        EXPECT_LE(lost, kImages / 10) << shirt.r << ' ' << shirt.g << ' ' << shirt.b << (slowly ? " slowly to " : " at once to ") << to;
+        EXPECT_LE(lost, kImages / 10) << shirt.r << ' ' << shirt.g << ' ' << shirt.b
+                                      << (slowly ? " slowly to " : " at once to ") << to;
       }
     }
   }

@@ -7,11 +7,11 @@
 namespace cgsr::person {
 namespace {
 
-constexpr double kStrip = 0.5;        // width of the strip around a place, in its shorter side
-constexpr double kLargestStep = 1.3;  // in sides, of the reach after images without the part
+constexpr double kStrip = 0.5;                     // width of the strip around a place, in its shorter side
+constexpr double kLargestStep = 1.3;               // in sides, of the reach after images without the part
 constexpr double kSmallest = 0.5, kLargest = 3.0;  // of the first width
-constexpr int kCells = 24;            // of the shorter side, where a place is large
-constexpr int kSteps = 16;            // to each side of a search, at most: its cost is bounded
+constexpr int kCells = 24;                         // of the shorter side, where a place is large
+constexpr int kSteps = 16;                         // to each side of a search, at most: its cost is bounded
 
 Box grown(const Box& box, double x, double y) {
   return {box.x - x, box.y - y, box.width + 2.0 * x, box.height + 2.0 * y};
@@ -131,10 +131,10 @@ PartPlace::Found PartPlace::search(double reach) const {
 }
 
 std::optional<Box> PartPlace::follow(const LabelImage& image, std::uint16_t label) {
-  constexpr double kUsual = 0.05;    // share of an image in what is usual
-  constexpr double kFollows = 0.2;   // share of a change of size that is followed in an image
-  constexpr double kGrows = 0.3;     // of the reach, with each image without it
-  constexpr double kTried = 1.05;  // in its size, at most
+  constexpr double kUsual = 0.05;   // share of an image in what is usual
+  constexpr double kFollows = 0.2;  // share of a change of size that is followed in an image
+  constexpr double kGrows = 0.3;    // of the reach, with each image without it
+  constexpr double kTried = 1.05;   // in its size, at most
   if (!place_ || image.empty()) return std::nullopt;
   const double side = std::sqrt(place_->area());
   const double reach = std::min(kLargestStep, parameters_.reach * (1.0 + kGrows * lost_)) * side;

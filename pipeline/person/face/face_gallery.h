@@ -26,9 +26,10 @@ struct FaceMatchParameters {
     visit.number("typical_stranger", self.typical_stranger, Range{0.01, 1.0}, "",
                  "How far a stranger's face is from an enrolled one, typically: stands in for the others where three "
                  "or four people are enrolled.");
-    visit.number("nearest_stranger", self.nearest_stranger, Range{0.01, 1.0}, "",
-                 "How far it is where it is most alike: stands in for them where one or two are, for there is nobody to "
-                 "compare with.");
+    visit.number(
+        "nearest_stranger", self.nearest_stranger, Range{0.01, 1.0}, "",
+        "How far it is where it is most alike: stands in for them where one or two are, for there is nobody to "
+        "compare with.");
     visit.number("min_views", self.min_views, Range{1, 20}, "",
                  "The number of views from which on a person can be named.");
     visit.number("max_views", self.max_views, Range{1, 50}, "",
@@ -50,7 +51,8 @@ struct FaceMatch {
   std::optional<Label> nearest;  ///< the person whose face is most like it, named or not.
   double distance = 1.0;  ///< to that one: the mean of view_distances() over the nearest four fifths of the points.
   double margin = 0.0;    ///< how much farther every other person is.
-  double rules_out = 0.0;  ///< the confidence that it is nobody's who is enrolled but `nearest`'s: a stranger's who resembles one person is surely not another's.
+  double rules_out =
+      0.0;  ///< the confidence that it is nobody's who is enrolled but `nearest`'s: a stranger's who resembles one person is surely not another's.
   FaceAlignment
       alignment{};  ///< how the face lies in its crop: against the nearest view of each person, in the mean over all.
 };

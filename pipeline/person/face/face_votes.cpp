@@ -21,6 +21,8 @@ bool FaceVotes::contradicted() const {
 }
 
 void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
+  constexpr double kClear = 0.55;
+  if (match_ && answer.label != match_->label && answer.confidence < kClear) return;
   std::shift_right(votes_.begin(), votes_.end(), 1);
   votes_.front() = answer;
   vote_count_ = std::min(vote_count_ + 1, kVotes);

@@ -52,11 +52,10 @@ Box face_above(const Box& shirt, double face_px) {
 
 bool is_above(const Box& face, const Box& shirt) {
   constexpr double kMostAbove = 2.0;  // of a face's upper edge above the shirt's, in widths of the face
-  constexpr double kOfTrunk = 0.5;   // of the shirt, where a part of a trunk is followed
+  constexpr double kOfTrunk = 0.5;    // of the shirt, where a part of a trunk is followed
   const double middle = face.x + face.width / 2, above = shirt.y - face.y;
   if (middle < shirt.x || middle > shirt.x + shirt.width || above < 0.0) return false;
-  return above <= kMostAbove * face.width ||
-         intersection(trunk_below(face), shirt).area() >= kOfTrunk * shirt.area();
+  return above <= kMostAbove * face.width || intersection(trunk_below(face), shirt).area() >= kOfTrunk * shirt.area();
 }
 
 PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)

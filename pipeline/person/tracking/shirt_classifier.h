@@ -138,7 +138,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   Box place_;
   PartPlace followed_;                    // the trunk, in pixels of the labels' image
   std::optional<Label> followed_person_;  // whose
-  Box holder_;  // the blob that holds the trunk, when it changed last; empty: none does
+  Box holder_;                            // the blob that holds the trunk, when it changed last; empty: none does
   bool is_sized_by_place_ = false;        // how far away the shirt is says the trunk, not its blob
   int since_place_learned_ = 0;
   int missed_ = 0;         // images since then; 0: it was found in the last one

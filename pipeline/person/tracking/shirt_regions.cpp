@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pipeline/person/colors/color_labels.h"
+
 namespace cgsr::person {
 namespace {
 
