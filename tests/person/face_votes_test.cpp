@@ -96,6 +96,15 @@ TEST(FaceVotes, RuleOutOthersAsSurelyAsTheLeastSure) {
   face.add(like(1, 0.95), 2);
   face.add(like(1, 0.83), 2);
   EXPECT_DOUBLE_EQ(face.match()->rules_out, 0.83) << "of the last three";
+  for (const double confidence : {0.52, 0.7}) {
+    FaceVotes contradicted;
+    for (int i = 0; i < 2; ++i) contradicted.add(like(2, 0.9), 2);
+    FaceMatch other = answer(1, confidence);
+    other.nearest = 1;
+    contradicted.add(other, 2);
+    EXPECT_EQ(contradicted.match()->label, std::nullopt);
+    EXPECT_DOUBLE_EQ(contradicted.match()->rules_out, 0.0) << confidence;
+  }
 }
 
 // A face that is as far as the threshold: it keeps the name that it has until one is clearly wrong.

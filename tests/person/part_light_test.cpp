@@ -101,6 +101,19 @@ TEST(PartLight, IsToldByTheChannelsThatTheShirtReflects) {
       << "one that it reflects has changed alone";
 }
 
+// Another wall is no light, however little of the shirt tells of it.
+TEST(PartLight, IsNotToldByWhatIsBesideAlone) {
+  for (const Rgb& shirt : {Rgb{0.55, 0.10, 0.10}, Rgb{0.08, 0.09, 0.13}}) {
+    PartLight light;
+    light.learn(1, kAssumed);
+    light.found(1, {shirt, {0.6, 0.6, 0.6}});
+    EXPECT_FALSE(light.found(1, {shirt, {0.6, 0.5, 0.4}}));
+    EXPECT_FALSE(light.suppose(1, {shirt, {0.6, 0.45, 0.35}}));
+    EXPECT_FALSE(light.suppose(1, {shirt, {0.4, 0.4, 0.4}}));
+    EXPECT_NEAR(light.of(1)->g, 0.8, 1e-9);
+  }
+}
+
 // A change of a percent in an image: what is beside the shirt keeps changing with it until it is enough for another light.
 TEST(PartLight, AddsUpAChangeThatIsSmallInEachImage) {
   PartLight light = learned();

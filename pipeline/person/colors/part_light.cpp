@@ -25,11 +25,37 @@ color::Light change_of(const imaging::Rgb& now, const imaging::Rgb& then) {
 constexpr color::Light kNoChange{1.0, 1.0, 1.0};
 constexpr double kMeasured = 0.04;  // how well two means are alike where nothing changes
 
-// What a part hardly reflects says nothing about the light: its coding is coarser than a change, and other channels leak into it.
-color::Light where_bright(const color::Light& change, const imaging::Rgb& then, const color::Light& beside) {
-  constexpr double kDim = 0.15;  // of a channel
-  const auto either = [](double own, double level, double other) { return level < kDim ? other : own; };
-  return {either(change.r, then.r, beside.r), either(change.g, then.g, beside.g), either(change.b, then.b, beside.b)};
+/// One channel of a part and of what is beside it: by how much it has changed.
+struct Channel {
+  double change = 1.0, beside = 1.0;
+  bool tells =
+      false;  // what a part hardly reflects does not: its coding is coarser than a change, and other channels leak into it
+};
+using Channels = std::array<Channel, 3>;
+
+Channels channels_of(const PartColors& then, const PartColors& now) {
+  constexpr double kDim = 0.15;
+  const color::Light change = change_of(now.part, then.part), beside = change_of(now.beside, then.beside);
+  return {{{change.r, beside.r, then.part.r >= kDim},
+           {change.g, beside.g, then.part.g >= kDim},
+           {change.b, beside.b, then.part.b >= kDim}}};
+}
+
+/// The change of each channel: what is beside the part says that of one that does not tell, as far as a lamp's colour may differ from the others' change.
+/// \return nothing: no channel tells.
+std::optional<color::Light> change_by(const Channels& channels) {
+  constexpr double kTint = 1.25;
+  double least = 0.0, most = 0.0;
+  for (const Channel& one : channels) {
+    if (!one.tells) continue;
+    least = least > 0.0 ? std::min(least, one.change) : one.change;
+    most = std::max(most, one.change);
+  }
+  if (most <= 0.0) return std::nullopt;
+  const auto of = [&](const Channel& one) {
+    return one.tells ? one.change : std::clamp(one.beside, least / kTint, most * kTint);
+  };
+  return color::Light{of(channels[0]), of(channels[1]), of(channels[2])};
 }
 
 }  // namespace
@@ -54,18 +80,18 @@ void PartLight::keep(std::span<const Label> people) {
 
 // Nothing: no light, or none that changed both alike, explains what is seen; or nothing has changed.
 std::optional<color::Light> PartLight::light_by(const Part& part, const PartColors& now) const {
-  const color::Light beside = change_of(now.beside, part.colors->beside);
-  const color::Light change = where_bright(change_of(now.part, part.colors->part), part.colors->part, beside);
-  const std::array log_change{std::log(change.r), std::log(change.g), std::log(change.b)};
-  const std::array log_beside{std::log(beside.r), std::log(beside.g), std::log(beside.b)};
+  const Channels channels = channels_of(*part.colors, now);
+  const auto change = change_by(channels);
+  if (!change) return std::nullopt;
   double largest = 0.0, apart = 0.0;
-  for (std::size_t channel = 0; channel < log_change.size(); ++channel) {
-    largest = std::max(largest, std::abs(log_change[channel]));
-    apart = std::max(apart, std::abs(log_change[channel] - log_beside[channel]));
+  for (const Channel& one : channels) {
+    if (!one.tells) continue;
+    largest = std::max(largest, std::abs(std::log(one.change)));
+    apart = std::max(apart, std::abs(std::log(one.change / one.beside)));
   }
   if (largest < parameters_.min_change || apart > std::max(kMeasured, parameters_.agreement * largest))
     return std::nullopt;
-  const color::Light light = color::lit(part.used, change);
+  const color::Light light = color::lit(part.used, *change);
   const color::Light gain = change_of(light, part.assumed);
   const auto [least, most] = std::minmax({gain.r, gain.g, gain.b});
   const bool plausible =
@@ -87,10 +113,18 @@ bool PartLight::found(Label person, const PartColors& colors) {
     part->colors = colors;
     return true;
   }
-  const color::Light change = change_of(colors.part, part->colors->part);
-  const bool looks_alike = !differs(change, kNoChange, parameters_.min_change / 2);
-  if (looks_alike && differs(change_of(colors.beside, part->colors->beside), change, kMeasured))
-    part->colors->beside = color::without_light(colors.beside, change);
+  const Channels channels = channels_of(*part->colors, colors);
+  const auto all = [&channels](const auto& holds) {
+    return std::ranges::all_of(channels, [&](const Channel& one) { return !one.tells || holds(one); });
+  };
+  const bool looks_alike =
+      all([&](const Channel& one) { return std::abs(one.change - 1.0) <= parameters_.min_change / 2; });
+  const bool stands_elsewhere =
+      !all([](const Channel& one) { return std::abs(one.beside - one.change) <= kMeasured * one.change; });
+  if (looks_alike && stands_elsewhere) {
+    const auto change = change_by(channels);
+    part->colors->beside = color::without_light(colors.beside, change.value_or(kNoChange));
+  }
   return false;
 }
 

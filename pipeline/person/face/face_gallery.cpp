@@ -106,7 +106,7 @@ FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label>
   const double scale = std::max(parameters_.min_margin, 1e-6);
   match.confidence = 1.0 - 0.5 * std::exp(-std::abs(match.margin - parameters_.min_margin) / scale);
   // The margin of everybody else is below -lead.
-  if (match.nearest) match.rules_out = 1.0 - 0.5 * std::exp(-(lead + parameters_.min_margin) / scale);
+  if (compared > 1) match.rules_out = 1.0 - 0.5 * std::exp(-(lead + parameters_.min_margin) / scale);
   return match;
 }
 

@@ -52,7 +52,7 @@ struct FaceMatch {
   double distance = 1.0;  ///< to that one: the mean of view_distances() over the nearest four fifths of the points.
   double margin = 0.0;    ///< how much farther every other person is.
   double rules_out =
-      0.0;  ///< the confidence that it is nobody's who is enrolled but `nearest`'s: a stranger's who resembles one person is surely not another's.
+      0.0;  ///< the confidence that it is nobody's who is enrolled but `nearest`'s: a stranger's who resembles one person is surely not another's; 0 where fewer than two are compared.
   FaceAlignment
       alignment{};  ///< how the face lies in its crop: against the nearest view of each person, in the mean over all.
 };

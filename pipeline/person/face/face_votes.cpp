@@ -22,7 +22,10 @@ bool FaceVotes::contradicted() const {
 
 void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
   constexpr double kClear = 0.55;
-  if (match_ && answer.label != match_->label && answer.confidence < kClear) return;
+  if (match_ && answer.label != match_->label && answer.confidence < kClear) {
+    if (answer.nearest != match_->nearest) match_->rules_out = 0.0;
+    return;
+  }
   std::shift_right(votes_.begin(), votes_.end(), 1);
   votes_.front() = answer;
   vote_count_ = std::min(vote_count_ + 1, kVotes);
@@ -42,7 +45,10 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
     evidence_ = evidence / agreeing;
   } else {
     comparisons_ = std::max(1, comparisons_ / 2);
-    if (match_) match_->confidence = 1.0 - 0.5 * std::exp(-evidence_ * std::sqrt(comparisons_));
+    if (match_) {
+      match_->confidence = 1.0 - 0.5 * std::exp(-evidence_ * std::sqrt(comparisons_));
+      match_->rules_out = 0.0;
+    }
     return;
   }
   match_ = answer;

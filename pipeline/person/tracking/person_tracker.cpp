@@ -34,9 +34,13 @@ std::string_view to_string(PersonSource source) {
 std::optional<Classification> FaceClassifier::classify(const PersonImage& input) {
   if (!input.face) return std::nullopt;
   const FaceMatch& match = input.face->match;
+  constexpr double kSure = 0.75;  // of a name
   const bool of_another = input.interest && match.label != input.interest && match.nearest != input.interest;
-  return Classification{match.label.value_or(kStranger),
-                        of_another ? std::max(match.confidence, match.rules_out) : match.confidence};
+  if (!of_another || (match.label && match.confidence >= kSure))
+    return Classification{match.label.value_or(kStranger), match.confidence};
+  // Whose it is is open, that it is not the person's is not.
+  if (match.rules_out > match.confidence) return Classification{kStranger, match.rules_out};
+  return Classification{match.label.value_or(kStranger), match.confidence};
 }
 
 std::optional<Classification> MarkerClassifier::classify(const PersonImage& input) {

@@ -38,7 +38,7 @@ Box settled(const Box& before, const Box& now) {
   const double width = std::max(now.width, kShrinks * before.width);
   const double height = std::max(now.height, kShrinks * before.height);
   const double x = before.x + (before.width - width) / 2, y = before.y + (before.height - height) / 2;
-  return {std::clamp(x, now.x + now.width - width, now.x), std::clamp(y, now.y + now.height - height, now.y), width,
+  return {std::clamp(x, now.x - (width - now.width), now.x), std::clamp(y, now.y - (height - now.height), now.y), width,
           height};
 }
 
@@ -273,6 +273,7 @@ bool ShirtClassifier::is_passer_by(const Teacher& teacher) const {
 void ShirtClassifier::follow_from(const Teacher& teacher) {
   if (is_passer_by(teacher)) return;
   followed_.end();
+  holder_ = {};
   followed_person_ = teacher.person;
   since_place_learned_ = 0;
   if (!followed_person_ || !colors_.knows(*followed_person_)) return;
@@ -320,7 +321,7 @@ std::optional<Classification> ShirtClassifier::classify(const PersonImage& input
 
 // After a loss its person may be nearer or farther away: how large the shirt was says nothing any longer. A light that changes loses it for a few images.
 void ShirtClassifier::found(const PersonImage& input, Label person) {
-  if (person != person_) before_light_.reset();
+  if (person != person_) before_light_.reset(), take_back_supposed();
   place_ = person == person_ && missed_ < kLongLoss ? settled(place_, box_) : box_;
   person_ = person;
   missed_ = since_trained_ = 0;
@@ -331,6 +332,13 @@ void ShirtClassifier::found(const PersonImage& input, Label person) {
   const Box window{place_.x - kRoom * place_.width, place_.y - kRoom * place_.height,
                    (1.0 + 2.0 * kRoom) * place_.width, (1.0 + 2.0 * kRoom) * place_.height};
   before_light_ = {window, pixels_in(window)};
+  map_is_due_ = true;
+}
+
+// Somebody else is seen meanwhile.
+void ShirtClassifier::take_back_supposed() {
+  if (!supposed_ || !person_) return;
+  light_.take_back(*person_);
   map_is_due_ = true;
 }
 
@@ -367,7 +375,7 @@ void ShirtClassifier::lost(const PersonImage& input) {
     map_is_due_ = true;
   }
   constexpr int kTurn = 2;  // images
-  if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && light_.turn(*person_)) map_is_due_ = true;
+  if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && !supposed_ && light_.turn(*person_)) map_is_due_ = true;
   if (missed_ >= kLongLoss || map_is_due_) return;
   const auto now = colors_of(input.image, place_);
   if (!now || !light_.suppose(*person_, *now)) return;
@@ -392,6 +400,7 @@ void ShirtClassifier::learn(const PersonImage& input, const Teacher& teacher) {
   const auto beside = colors_of_both(input.image, beside_trunk(trunk_below(teacher.face)));
   background.insert(background.end(), beside.begin(), beside.end());
   const Label person = *teacher.person;
+  if (person != person_) take_back_supposed();
   colors_.learn(person, region_colors(input.image, regions.shirt), background);
   if (preferred_) colors_.prefer(*preferred_);
   if (const auto light = colors_.learned_light(person)) light_.learn(person, *light);
@@ -446,7 +455,7 @@ void ShirtClassifier::forget(Label person) {
   if (seen_ == person) seen_.reset();
   if (person_ == person) person_.reset(), before_light_.reset();
   if (preferred_ == person) preferred_.reset();
-  if (followed_person_ == person) followed_.end();
+  if (followed_person_ == person) followed_.end(), holder_ = {};
 }
 
 }  // namespace cgsr::person

@@ -115,6 +115,7 @@ class ShirtClassifier final : public Classifier<PersonImage> {
   [[nodiscard]] std::uint16_t label_of(Label person) const;
   void found(const PersonImage& input, Label person);
   void lost(const PersonImage& input);
+  void take_back_supposed();
   [[nodiscard]] int pixels_in(const Box& window) const;
   void check_light();
 
