@@ -67,7 +67,7 @@ class PersonColors {
 
   /// The RGB-to-person map, over the colour codes of an image: 0 is nobody, i + 1 is the person at place i of order().
   /// \param lights  the light of each person now, in the order of order(); missing ones: as it was at learning.
-  /// Cost: 4 million instructions for each person who was learned since the last one, or whose light is neither that of the last one nor that of the one before.
+  /// Cost: every code near a sample is compared with 3^3 bins under the light of learning, with 7^3 to 11^3 under another one, for each person who was learned since the last one, or whose light is neither that of the last one nor that of the one before.
   void make_map(std::span<const color::Light> lights, imaging::LabelTable& map);
   /// The people by place.
   [[nodiscard]] std::vector<Label> order() const;

@@ -8,7 +8,7 @@
 
 namespace cgsr::person {
 
-/// Whose one face is by several comparisons: the newest answer decides with those of the last three that agree with it. Ours: 6.2.1 compares once.
+/// Whose one face is by several comparisons: the newest answer that counts decides with those of the last three that agree with it. Ours: 6.2.1 compares once.
 ///
 /// Others than the nearest are ruled out as surely as by the least sure of those answers, which have to be nearest to the same person.
 ///
@@ -22,7 +22,7 @@ class FaceVotes {
 
   /// \return nothing: not known yet. A match without a label: a stranger's.
   [[nodiscard]] const std::optional<FaceMatch>& match() const { return match_; }
-  /// Whether the newest answer is another one than match().
+  /// Whether the newest answer that counts is another one than match().
   [[nodiscard]] bool contradicted() const;
 
  private:
