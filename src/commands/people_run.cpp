@@ -27,9 +27,12 @@ constexpr const char* kColumns = "frame,identity,source,confidence,x,y,width,hei
 constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
 
 // How far faces are from somebody's views, by how far they are from each other.
-constexpr double kMuchFarther = 1.5;  // photographs of one person: .6 to 1.4; generated faces of two: from 1.55 on
-constexpr double kAlike = 0.03;       // nearer than this are only images of one sitting,
-constexpr double kUnlike = 0.035;     // and farther only images of which some are bad
+// Generated faces in one sitting: of one person .06 to .1, of two from .0885 on. In another light and distance those of one are .07 to .13 away. Of photographs
+// .02 to .11 and from .145 on.
+constexpr double kMuchFarther = 1.25;  // than from each other: somebody else's, where nothing says that it is the same person
+constexpr double kOtherwise = 1.7;     // the same, where it is said so
+constexpr double kAlike = 0.06;        // nearer than this are only images of one sitting,
+constexpr double kUnlike = 0.07;       // and farther only images of which some are bad
 
 double distance(const FaceDescriptor& face, const FaceView& view) {
   std::array<double, person::kViewSide * person::kViewSide> points{};
@@ -149,7 +152,7 @@ bool are_unlike(const std::vector<FaceDescriptor>& faces, double among, const st
   for (const FaceView& view : views) hers.enroll(1, view);
   double sum = 0.0;
   for (const FaceDescriptor& face : faces) sum += hers.identify(face).distance;
-  return sum / static_cast<double>(faces.size()) > kMuchFarther * std::clamp(among, kAlike, kUnlike);
+  return sum / static_cast<double>(faces.size()) > kOtherwise * std::clamp(among, kAlike, kUnlike);
 }
 
 /// Adds the person whose faces these are to those who are known.

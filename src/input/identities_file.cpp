@@ -141,8 +141,14 @@ tl::expected<Identities, ReadFailure> read_identities(const std::filesystem::pat
   try {
     const json file = json::from_cbor(bytes);
     if (!file.is_object() || file.value("format", "") != kFormat) return damaged(path, "its first entry is no format");
-    if (const int version = file.at("version").get<int>(); version > kIdentitiesVersion) {
+    const int version = file.at("version").get<int>();
+    if (version > kIdentitiesVersion) {
       return unreadable(path, fmt::format("version {} is newer than this program's {}", version, kIdentitiesVersion));
+    }
+    if (version < kIdentitiesVersion) {
+      return unreadable(path, fmt::format("version {} is older than this program's {}: faces are described otherwise "
+                                          "since; remove the file and enrol its people again",
+                                          version, kIdentitiesVersion));
     }
     const Bytes& payload = file.at("payload").get_binary();
     const Bytes& checksum = file.at("sha256").get_binary();

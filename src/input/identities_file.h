@@ -12,15 +12,15 @@
 
 namespace cgsr::app {
 
-/// Version that save_identities writes. load_identities refuses newer ones by name.
-inline constexpr int kIdentitiesVersion = 1;
+/// Version that save_identities writes, and the only one that load_identities reads: views of another cannot be compared with a face as it is described now.
+inline constexpr int kIdentitiesVersion = 2;
 
 /// Writes the identities: CBOR {format, version, sha256, payload}, the payload again CBOR; readable by the owner alone (mode 0600). The file appears
 /// whole or not at all: it is written beside its place, synchronised and renamed; of a symbolic link what it points to is written. A name that name_problem() speaks
 /// against is refused.
 Result<void> save_identities(const person::Identities& identities, const std::filesystem::path& path);
 
-/// \return the identities; none where there is no such file; or what is wrong with it: not such a file, newer than this program, damaged.
+/// \return the identities; none where there is no such file; or what is wrong with it: not such a file, of another version, damaged.
 Result<person::Identities> load_identities(const std::filesystem::path& path);
 
 /// What is wrong with a name that somebody is to be enrolled under: it is empty, too long, or has control characters. \return nothing: it can be kept.

@@ -15,6 +15,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/objdetect.hpp>
 
+#include "hal/sim/people/identity.h"
 #include "hal/sim/render/sensor.h"
 #include "hal/sim/render/truth_images.h"
 #include "hal/sim/scene/portable_math.h"
@@ -109,6 +110,28 @@ TEST(PeopleFaces, AreFoundFromTheFrontAndNotFromTheSide) {
   std::printf("found: %.1f %% within 20 degrees, %.1f %% beyond 65\n", 100 * front, 100 * side);
   EXPECT_GE(front, 0.95);
   EXPECT_LE(side, 0.03);
+}
+
+// A number draws the same face every time, another number another one.
+TEST(PeopleFaces, DrawnByTheirNumberAreFoundFromTheFrontToo) {
+  Detector detector;
+  ASSERT_TRUE(detector.ready()) << "Debian's opencv-data has the cascade";
+  int found = 0, looked = 0;
+  std::uint32_t images = 100;
+  for (int number = kIdentities; number < kIdentities + 12; ++number) {
+    const Identity who = identity(number), again = identity(number), other = identity(number + 1);
+    EXPECT_EQ(who.skin, again.skin);
+    EXPECT_EQ(who.mouth_down_m, again.mouth_down_m);
+    EXPECT_NE(who.mouth_down_m, other.mouth_down_m);
+    Portrait portrait(number);
+    for (const auto& [yaw, distance] : {std::pair{0.0, 1.0}, {10.0, 1.6}, {-15.0, 2.2}}) {
+      portrait.turn(degrees(yaw));
+      found += detector.finds(portrait, distance, ++images) ? 1 : 0;
+      ++looked;
+    }
+  }
+  std::printf("drawn faces: %d of %d found\n", found, looked);
+  EXPECT_GE(found, looked * 9 / 10);
 }
 
 // SIFT descriptors of a head as the camera sees it at 640x480.

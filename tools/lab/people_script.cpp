@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "hal/sim/people/person.h"
+#include "tools/lab/person_cast.h"
 #include "tools/lab/person_watch.h"
 
 namespace cgsr::lab {
@@ -24,14 +23,10 @@ struct Pair {
 
 Pair draw_pair(Random& random) {
   Pair pair;
-  std::array<int, sim::kIdentities> all{};
-  std::iota(all.begin(), all.end(), 0);
-  for (std::size_t i = all.size(); i-- > 1;)
-    std::swap(all[i], all[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
-  pair.identities.assign(all.begin(), all.begin() + 2);
+  pair.identities = draw_people(2, random);
   for (std::size_t i = 0; i < 2; ++i) {
     Figure& person = pair.people[i];
-    person.identity = all[i];
+    person.identity = pair.identities[i];
     person.height_m = random.uniform(1.62, 1.82);
     person.shirt = draw_vivid_shirt(random);
     person.x_m = 2.3 + random.uniform(-0.2, 0.2);
@@ -125,12 +120,11 @@ Case crossing_people(Random& random) {
 
 Case dark_face(Random& random) {
   Pair pair = draw_pair(random);
-  constexpr int kDarkest = sim::kIdentities - 1;
-  for (int& identity : pair.identities)
-    if (identity == kDarkest) identity = pair.identities.front();  // the other
-  pair.identities.front() = kDarkest;
+  do {
+    pair.identities.front() = draw_dark_person(random);
+  } while (pair.identities.front() == pair.identities.back());
   Figure person = pair.people[0];
-  person.identity = kDarkest;
+  person.identity = pair.identities.front();
   person.turns_s = at(4.0), person.to_s = at(7.0);
   Figure again = person;
   again.from_s = at(7.5), again.to_s = 1000.0, again.turns_s = 1000.0;

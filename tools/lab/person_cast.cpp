@@ -2,11 +2,13 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 
 #include <fmt/format.h>
 
+#include "hal/sim/people/identity.h"
 #include "tools/lab/child.h"
 #include "tools/lab/source_path.h"
 
@@ -27,20 +29,48 @@ Result<std::string> empty_arena() {
   return text;
 }
 
+std::vector<int> draw_people(std::size_t count, Random& random) {
+  std::vector<int> people;
+  while (people.size() < count) {
+    const int number = sim::kIdentities + random.below(sim::kLastIdentity - sim::kIdentities + 1);
+    if (std::ranges::find(people, number) == people.end()) people.push_back(number);
+  }
+  return people;
+}
+
+int draw_dark_person(Random& random) {
+  constexpr float kDark = 0.16F;  // albedo; the darkest by hand has .135
+  int number = 0;
+  do {
+    number = draw_people(1, random).front();
+  } while (sim::identity(number).skin.mean() > kDark);
+  return number;
+}
+
 Result<std::filesystem::path> Portraits::of(int identity) {
   const auto pictures = folder_ / fmt::format("portraits-{}", identity);
   if (std::filesystem::exists(pictures)) return pictures;
+  return take(identity, 0);
+}
+
+Result<std::filesystem::path> Portraits::more_of(int identity) {
+  return take(identity, kPortraits);
+}
+
+Result<std::filesystem::path> Portraits::take(int identity, int first) {
+  const auto pictures = folder_ / fmt::format("portraits-{}", identity);
   auto world = empty_arena();
   if (!world) return tl::unexpected(world.error());
   *world += fmt::format(
       "[[person]]\nname = \"sitter\"\nidentity = {}\nwalk = {{ stop = [{{ at_m = [2.4, 0.0, 0.0], heading_deg = 180.0 "
       "}}] "
-      "}}\nhead = [{{ at_s = 0.0 }}, {{ at_s = 1.0, yaw_deg = 12.0 }}, {{ at_s = 2.0, yaw_deg = -12.0 }}]\n",
+      "}}\nhead = [{{ at_s = 0.0 }}, {{ at_s = 1.0, yaw_deg = 12.0 }}, {{ at_s = 2.0, yaw_deg = -12.0 }}, "
+      "{{ at_s = 2.7, yaw_deg = -12.0 }}, {{ at_s = 6.0, yaw_deg = 8.0 }}]\n",
       identity);
   const auto file = folder_ / fmt::format("sitter-{}.toml", identity);
   if (auto written = write_text(file, *world); !written) return tl::unexpected(written.error());
   std::filesystem::create_directories(pictures);
-  for (int i = 0; i < kPortraits; ++i) {
+  for (int i = first; i < first + kPortraits; ++i) {
     auto taken = run_cgsr({"sim", "render", "--world", file.string(), "--time", fmt::format("{}", 0.5 + 0.7 * i),
                            "--from", "1.2,0.05,1.55", "--to", "2.4,0,1.55", "--size", "640x480", "--seed",
                            fmt::format("{}", i + 1), "--output", (pictures / fmt::format("{}.png", i)).string()});
@@ -58,8 +88,13 @@ Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits,
                                    file.string(), "--name",          fmt::format("identity {}", identity),
                                    "--input",     pictures->string()};
     if (run_cgsr(words)) continue;
-    ++refused;
     words.emplace_back("--alike");
+    if (run_cgsr(words)) {
+      ++refused;
+      continue;
+    }
+    // No face in any picture: whoever enrols takes more.
+    if (const auto more = portraits.more_of(identity); !more) return tl::unexpected(more.error());
     if (const auto enrolled = run_cgsr(words); !enrolled) return tl::unexpected(enrolled.error());
   }
   return refused;

@@ -9,11 +9,17 @@
 
 #include "platform/error.h"
 #include "tools/lab/child.h"
+#include "tools/lab/scenes/random.h"
 
 namespace cgsr::lab {
 
 /// The shipped person arena without its people, as text.
 Result<std::string> empty_arena();
+
+/// \return so many different people of those that the simulator draws by their number; nobody is tuned to them.
+std::vector<int> draw_people(std::size_t count, Random& random);
+/// \return one of them whose skin is about as dark as the darkest that is made by hand.
+int draw_dark_person(Random& random);
 
 /// Draws pictures of generated people from which they are enrolled: from near, at several moments of a turning head, each once.
 class Portraits {
@@ -21,10 +27,13 @@ class Portraits {
   /// \param folder  in which the pictures go; outlives this.
   explicit Portraits(const TableFolder& folder) : folder_(folder) {}
 
-  /// \param identity  0 .. sim::kIdentities - 1. \return the folder of the pictures.
+  /// \param identity  0 .. sim::kLastIdentity. \return the folder of the pictures.
   Result<std::filesystem::path> of(int identity);
+  /// As many again, for somebody whose face was found in none.
+  Result<std::filesystem::path> more_of(int identity);
 
  private:
+  Result<std::filesystem::path> take(int identity, int first);
   const TableFolder& folder_;
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "hal/sim/scene/portable_math.h"
 
 namespace cgsr::sim {
 namespace {
@@ -85,15 +88,61 @@ std::array<Outfit, kIdentities> make_outfits() {
           wears(ShirtKind::kPlain, white, white, black)};
 }
 
+/// Numbers that belong to somebody: the n-th is the same whatever else is drawn.
+class Draws {
+ public:
+  explicit Draws(std::uint32_t seed) : seed_(seed) {}
+  float between(float low, float high) { return low + (high - low) * unit(mix(seed_, next_++)); }
+
+ private:
+  std::uint32_t seed_;
+  std::uint32_t next_ = 0;
+};
+
+// One of the shipped skins or between two of them, by how dark it is.
+Rgb skin_of(float darkness, const std::array<Identity, kIdentities>& faces) {
+  const float at = darkness * (kIdentities - 1);
+  const auto lighter = std::min(static_cast<std::size_t>(at), faces.size() - 2);
+  const float share = at - static_cast<float>(lighter);
+  return (1.0F - share) * faces[lighter].skin + share * faces[lighter + 1].skin;
+}
+
+// Within what the shipped faces span and a little beyond it; the mouth keeps its distance from the nose.
+Identity drawn(int number, const std::array<Identity, kIdentities>& faces) {
+  Identity who;
+  Draws draws(static_cast<std::uint32_t>(number));
+  const float darkness = draws.between(0.0F, 1.0F);
+  who.skin = skin_of(darkness, faces);
+  const auto first = static_cast<std::size_t>(std::floor(4.0F * darkness));  // of four shipped ones about as dark
+  who.hair = draws.between(0.7F, 1.3F) * faces[first + static_cast<std::size_t>(draws.between(0.0F, 3.99F))].hair;
+  who.skin_contrast = draws.between(0.45F, 0.7F);
+  who.width = draws.between(0.96F, 1.05F);
+  who.height = draws.between(0.97F, 1.04F);
+  who.jaw = draws.between(0.19F, 0.33F);
+  who.eye_apart_m = draws.between(0.0305F, 0.0340F);
+  who.nose_length_m = draws.between(0.034F, 0.040F);
+  who.nose_width = draws.between(0.92F, 1.2F);
+  who.mouth_width_m = draws.between(0.0215F, 0.0275F);
+  who.mouth_down_m = who.nose_length_m + draws.between(0.024F, 0.029F);
+  who.lip_red = draws.between(0.3F, 0.9F);
+  who.brow_up_m = draws.between(0.019F, 0.0235F);
+  who.brow_thick_m = draws.between(0.003F, 0.0057F);
+  who.hairline_m = draws.between(0.061F, 0.074F);
+  who.hair_back_m = draws.between(-0.11F, -0.055F);
+  who.beard = std::max(0.0F, draws.between(-0.5F, 0.5F));
+  who.glasses = draws.between(0.0F, 1.0F) < 0.25F;
+  return who;
+}
+
 }  // namespace
 
 Identity identity(int index) {
   static const auto faces = make_faces();
   static const auto outfits = make_outfits();
-  const auto number = static_cast<std::size_t>(std::clamp(index, 0, kIdentities - 1));
-  Identity who = faces[number];
-  who.outfit = outfits[number];
-  who.seed = 1000U + static_cast<std::uint32_t>(index) * 77U;
+  const int number = std::clamp(index, 0, kLastIdentity);
+  Identity who = number < kIdentities ? faces[static_cast<std::size_t>(number)] : drawn(number, faces);
+  who.seed = 1000U + static_cast<std::uint32_t>(number) * 77U;
+  who.outfit = outfits[static_cast<std::size_t>(number % kIdentities)];
   return who;
 }
 

@@ -30,7 +30,7 @@ struct Identity {
   Outfit outfit{};  ///< the usual one.
 };
 
-/// \param index  0 .. kIdentities - 1. Skin goes from light to dark with it.
+/// \param index  0 .. kLastIdentity. The first kIdentities are made by hand, skin going from light to dark with them; every other is drawn by its number.
 Identity identity(int index);
 
 }  // namespace cgsr::sim

@@ -10,8 +10,10 @@
 
 namespace cgsr::sim {
 
-/// How many different people there are; identity 0 .. kIdentities - 1.
+/// How many people are made by hand: identity 0 .. kIdentities - 1.
 inline constexpr int kIdentities = 8;
+/// Those after them, up to this one, are drawn by their number.
+inline constexpr int kLastIdentity = 99'999;
 
 enum class ShirtKind : std::uint8_t { kPlain, kStriped, kTwoColoured };
 inline constexpr Named<ShirtKind> kShirtNames[] = {

@@ -145,7 +145,8 @@ struct PersonSpec {
   static void describe(Self& self, Visitor& visit) {
     visit.line(self.line);
     visit.text("name", self.name, "for messages and truth");
-    visit.number("identity", self.identity, {0, kIdentities - 1}, "", "which face, skin and hair");
+    visit.number("identity", self.identity, {0, kLastIdentity}, "",
+                 "which face, skin and hair: the first eight are made by hand, the others drawn by their number");
     visit.number("height_m", self.height_m, {1.0, 2.1}, "m", "height");
     visit.list("outfit", self.outfit, "what can be worn; none: one of the identity's own");
     visit.list("head", self.head, "where the head looks");

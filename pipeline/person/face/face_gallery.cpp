@@ -13,9 +13,9 @@ constexpr std::size_t kEnoughOthers = 4, kHardlyAny = 2;
 
 using PointDistances = std::array<double, kViewSide * kViewSide>;
 
-// Hair, glasses and background, which match nobody, are left out.
+// What matches nobody, as hair or a reflection in glasses, is left out.
 double mean_of_nearest(PointDistances points) {
-  constexpr double kCounted = 0.8;
+  constexpr double kCounted = 0.95;
   const auto counted = static_cast<std::ptrdiff_t>(kCounted * points.size());
   std::nth_element(points.begin(), points.begin() + counted, points.end());
   return std::accumulate(points.begin(), points.begin() + counted, 0.0) / static_cast<double>(counted);

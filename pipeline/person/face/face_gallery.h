@@ -11,13 +11,13 @@
 namespace cgsr::person {
 
 struct FaceMatchParameters {
-  double min_margin = 0.0185;
-  double typical_stranger = 0.105;
-  double nearest_stranger = 0.0885;
+  double min_margin = 0.025;
+  double typical_stranger = 0.155;
+  double nearest_stranger = 0.145;
   int min_views = 2;
   int max_views = 6;
   int max_learned_views = 2;
-  double max_step = 0.05;
+  double max_step = 0.09;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
@@ -49,7 +49,7 @@ struct FaceMatch {
   std::optional<Label> label;    ///< nothing: a stranger's.
   double confidence = 0.0;       ///< of this answer, 0.5 at the threshold, 1 far from it.
   std::optional<Label> nearest;  ///< the person whose face is most like it, named or not.
-  double distance = 1.0;  ///< to that one: the mean of view_distances() over the nearest four fifths of the points.
+  double distance = 1.0;  ///< to that one: the mean of view_distances() over all points but the farthest twentieth.
   double margin = 0.0;    ///< how much farther every other person is.
   double rules_out =
       0.0;  ///< the confidence that it is nobody's who is enrolled but `nearest`'s: a stranger's who resembles one person is surely not another's; 0 where fewer than two are compared.

@@ -28,7 +28,7 @@ struct FaceAnswer {
 /// mean, not as the nearest: laid onto one person's face, a stranger's becomes more like that one and not like the others. Ours.
 ///
 /// \param crop  as face_crop() cuts it; anything else is a stranger's.  \param without  as in FaceGallery::identify().
-/// Cost: 30 million instructions and half a million for each view in the gallery; twice that where it is cut once more.
+/// Cost: 11 million instructions and half a million for each view in the gallery; twice that where it is cut once more.
 FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without = std::nullopt);
 
 /// Names the faces of questions, and learns new views of who is followed: the training of a primary characteristic by one that is surer (Alg. 6.1). Here that
@@ -61,7 +61,7 @@ class FaceTrainer {
   std::size_t oldest_ = 0;
 };
 
-/// Where the frame path has faces named: beside it, because describing a face costs a third of an image's time. Whoever asks goes on and looks
+/// Where the frame path has faces named: beside it, because naming a face costs about an image's time. Whoever asks goes on and looks
 /// for the answer in a later image. Ours; the dissertation (6.2.3) recognises on the frame path, in every other image.
 ///
 /// Threads: one, which asks and reads the answers.

@@ -20,7 +20,7 @@ struct FaceTrackParameters {
   int ask_again_images = 15;
   int ask_again_unsure_images = 6;
   double min_sure_confidence = 0.75;
-  int max_comparisons = 3;
+  int max_comparisons = 5;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace cgsr::person {
 namespace {
@@ -112,7 +113,7 @@ PersonSighting PersonTracker::update(const PersonImage& input, const PersonConte
   if (!due) now.face.reset();
   now.head = head_of(now);
   const auto settled = feedback_.classify(now);
-  if (due) by_face_.reset();
+  keep_face(now, due);
   shirts_.observe(now);
   if (now.face) face_colors_.observe_face(now, *now.face);
   if (!settled) return {};
@@ -120,7 +121,10 @@ PersonSighting PersonTracker::update(const PersonImage& input, const PersonConte
   sighting.person = settled->label;
   sighting.confidence = settled->confidence;
   locate(input, settled->label, sighting);
-  if (sighting.source == PersonSource::kFace) by_face_ = sighting;
+  if (sighting.source == PersonSource::kFace) {
+    by_face_ = sighting;
+    since_by_face_ = 0;
+  }
   if (is_below_other_face(sighting)) {
     sighting.person = by_face_->person;
     sighting.confidence = by_face_->confidence;
@@ -169,7 +173,24 @@ void PersonTracker::confirm_head(const PersonImage& input, const PersonSighting&
     face_colors_.confirm(*sighting.person, face_above(sighting.box, sighting.face_px));
 }
 
-// Colours where the last face was a stranger's, or that of somebody who is dressed alike, are his until faces are looked for again.
+// A stranger's face that is not found for some images, because the robot sways or he looks down, still is above the shirt that it was above.
+void PersonTracker::keep_face(const PersonImage& input, bool due) {
+  constexpr int kKept = 30;  // images
+  const Box moved_from = std::exchange(shirt_before_, shirts_.box());
+  if (!by_face_) return;
+  const Box& shirt = shirt_before_;
+  const bool is_followed = !shirt.empty() && !intersection(shirt, moved_from).empty();
+  const bool is_kept = by_face_->person == kStranger && !input.face && is_followed && ++since_by_face_ <= kKept;
+  if (due && !is_kept) {
+    by_face_.reset();
+    return;
+  }
+  if (!is_followed) return;
+  by_face_->box.x += shirt.x + shirt.width / 2 - (moved_from.x + moved_from.width / 2);
+  by_face_->box.y += shirt.y - moved_from.y;
+}
+
+// Colours where the last face was a stranger's, or that of somebody who is dressed alike, are his until another face is seen there.
 bool PersonTracker::is_below_other_face(const PersonSighting& sighting) const {
   if (!by_face_ || by_face_->person == sighting.person) return false;
   if (sighting.source == PersonSource::kShirt) return is_above(by_face_->box, sighting.box);

@@ -69,7 +69,7 @@ Box face_above(const Box& shirt, double face_px);
 bool is_above(const Box& face, const Box& shirt);
 
 /// One person from image to image by marker, face, face colour and shirt (6.2, 6.3): Alg. 6.1 with marker and face as primary and the two others as secondary
-/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a face overrides a shirt, until faces are looked for again; a stranger's teaches it
+/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a face overrides a shirt, until faces are looked for again, a stranger's for a second longer while no face is seen above it; a stranger's teaches it
 /// nothing; the colours of a head that is followed show that what looks like the shirt elsewhere is none (6.3.1).
 ///
 /// Threads: one.
@@ -102,6 +102,7 @@ class PersonTracker {
   void measure(const PersonImage& input, PersonSighting& sighting);
   [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
   void confirm_head(const PersonImage& input, const PersonSighting& sighting);
+  void keep_face(const PersonImage& input, bool due);
   [[nodiscard]] bool is_below_other_face(const PersonSighting& sighting) const;
 
   PersonTrackerParameters parameters_;
@@ -113,7 +114,9 @@ class PersonTracker {
   FeedbackClassifier<PersonImage> feedback_;
   bool heads_first_ = false;               // the map of heads is made before that of shirts
   int since_face_ = 0;                     // images since one was looked for
-  std::optional<PersonSighting> by_face_;  // who was decided on by face when faces were last looked for
+  std::optional<PersonSighting> by_face_;  // who was decided on by face when faces were last looked for; a stranger stays
+  int since_by_face_ = 0;                  // images
+  Box shirt_before_;                       // in the last image
   std::vector<Size> sizes_;                // of those whose shirts are known, and of whoever was measured last
 };
 

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "hal/sim/people/person.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/person_cast.h"
 #include "tools/lab/person_watch.h"
@@ -38,11 +36,8 @@ struct Cast {
 Cast draw_cast(std::uint64_t seed) {
   Random random(Random::mix(seed));
   Cast cast;
-  std::array<int, sim::kIdentities> all{};
-  std::iota(all.begin(), all.end(), 0);
-  for (std::size_t i = all.size(); i-- > 1;)
-    std::swap(all[i], all[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
-  cast.identities.assign(all.begin(), all.begin() + 4);
+  const std::vector<int> all = draw_people(4, random);
+  cast.identities.assign(all.begin(), all.end());
   const auto near = [&random](double value, double reach) { return value + random.uniform(-reach, reach); };
   // A grey shirt is told from walls by nothing that this figure is about.
   const std::array<double, 3> shirt = draw_vivid_shirt(random);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,7 +13,6 @@
 
 #include <fmt/format.h>
 
-#include "hal/sim/people/person.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/people_script.h"
 #include "tools/lab/person_cast.h"
@@ -69,10 +67,7 @@ Figure walking(Figure person, double from_s, double turns_s, double to_x_m, doub
 }
 
 Story draw_story(Random& random) {
-  std::array<int, sim::kIdentities> all{};
-  std::iota(all.begin(), all.end(), 0);
-  for (std::size_t i = all.size(); i-- > 1;)
-    std::swap(all[i], all[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
+  const std::vector<int> all = draw_people(kEnrolled + kTimes, random);
   Story story;
   story.enrolled.assign(all.begin(), all.begin() + kEnrolled);
   story.lamp = fmt::format("[[lamp.script]]\nat_s = 0.0\nfactor = [{:.2f}, {:.2f}, {:.2f}]\n", random.uniform(0.8, 1.1),

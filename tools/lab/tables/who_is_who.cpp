@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 
-#include "hal/sim/people/person.h"
 #include "tools/lab/experiment.h"
 #include "tools/lab/person_cast.h"
 #include "tools/lab/scenes/random.h"
@@ -36,13 +35,11 @@ struct Line {
 
 Line draw_line(std::uint64_t seed) {
   Random random(Random::mix(seed));
-  std::array<int, sim::kIdentities> all{};
-  std::iota(all.begin(), all.end(), 0);
+  const std::vector<int> all = draw_people(kPeople, random);
   const auto shuffle = [&random](auto& values) {
     for (std::size_t i = values.size(); i-- > 1;)
       std::swap(values[i], values[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
   };
-  shuffle(all);
   Line line;
   line.enrolled.assign(all.begin(), all.begin() + kKnown);
   std::iota(line.numbers.begin(), line.numbers.end(), 0);
@@ -198,8 +195,7 @@ Result<Report> who_is_who(const Setting& setting) {
       "A line is drawn by the seed: who stands in it and where, who is not enrolled, heights, how heads turn. People "
       "stand .7 m apart, 1.6 m before the robot, and look at it.",
       "The dissertation's robot named four of five right (6.4.1.2).",
-      fmt::format("The simulator has {} faces; every line takes five of them. Intervals are over lines.",
-                  sim::kIdentities)};
+      "The simulator draws a face for each of 100,000 numbers; every line takes five others. Intervals are over lines."};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
 }

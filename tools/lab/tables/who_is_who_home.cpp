@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,10 +62,7 @@ bool fits(const behavior::FreeFloor& floor, const behavior::Place& place, std::s
 
 Cast draw_cast(std::uint64_t seed, const behavior::FreeFloor& floor) {
   Random random(Random::mix(seed));
-  std::array<int, sim::kIdentities> all{};
-  std::iota(all.begin(), all.end(), 0);
-  for (std::size_t i = all.size(); i-- > 1;)
-    std::swap(all[i], all[static_cast<std::size_t>(random.below(static_cast<int>(i) + 1))]);
+  const std::vector<int> all = draw_people(kPeople, random);
   Cast cast;
   cast.enrolled.assign(all.begin(), all.begin() + kKnown);
   for (std::size_t i = 0; i < kPeople; ++i) {
@@ -222,7 +218,7 @@ Result<Report> who_is_who_home(const Setting& setting) {
       "%.",
       "Somebody is found where a person is told of within a metre in the end, at most 5 minutes after the run began. "
       "Who is not found at all counts 300 s.",
-      fmt::format("The simulator has {} faces; every cast takes five of them.", sim::kIdentities)};
+      "The simulator draws a face for each of 100,000 numbers; every cast takes five others."};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
 }
