@@ -3,15 +3,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "platform/config/sha256.h"
 
 namespace cgsr::app {
 namespace {
@@ -169,6 +175,81 @@ TEST_F(IdentitiesFile, RefusesADeeplyNestedOne) {
               std::string::npos)
         << read.error().message;
   }
+}
+
+std::vector<std::uint8_t> checksum_of(const std::vector<std::uint8_t>& bytes) {
+  const std::string digits = config::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  std::vector<std::uint8_t> sum;
+  for (std::size_t i = 0; i < digits.size(); i += 2)
+    sum.push_back(static_cast<std::uint8_t>(std::stoi(digits.substr(i, 2), nullptr, 16)));
+  return sum;
+}
+
+/// Some bytes changed, taken out, put in or cut off.
+std::vector<std::uint8_t> damaged(std::vector<std::uint8_t> bytes, std::mt19937& random) {
+  const auto below = [&random](std::size_t count) { return random() % std::max<std::size_t>(count, 1); };
+  const auto place = [&] { return bytes.begin() + static_cast<std::ptrdiff_t>(below(std::min<std::size_t>(bytes.size(), 160))); };
+  for (std::size_t changes = 1 + below(3); changes > 0 && !bytes.empty(); --changes) {
+    switch (below(4)) {
+      case 0:
+        *place() = static_cast<std::uint8_t>(random());
+        break;
+      case 1:
+        bytes.erase(place());
+        break;
+      case 2:
+        bytes.insert(place(), static_cast<std::uint8_t>(random()));
+        break;
+      default:
+        bytes.resize(below(bytes.size()));
+    }
+  }
+  return bytes;
+}
+
+// Where the checksum fits too, as where somebody made the file on purpose.
+TEST_F(IdentitiesFile, IsReadOrRefusedWithTheReasonWhateverItHolds) {
+  constexpr int kFiles = 400;
+  ASSERT_TRUE(save_identities(some(2), file_));
+  const std::string good = bytes();
+  const auto sound = nlohmann::json::from_cbor(good);
+  const std::vector<std::uint8_t> payload = sound.at("payload").get_binary();
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < kFiles; ++i) {
+    std::vector<std::uint8_t> file;
+    if (i % 3 == 0) {
+      file = damaged({good.begin(), good.end()}, random);
+    } else {
+      const auto changed = damaged(payload, random);
+      auto whole = sound;
+      whole["payload"] = nlohmann::json::binary(changed);
+      whole["sha256"] = nlohmann::json::binary(checksum_of(changed));
+      file = nlohmann::json::to_cbor(whole);
+    }
+    write({file.begin(), file.end()});
+    const auto read = load_identities(file_);
+    refused += read ? 0 : 1;
+    if (read) {
+      for (const auto& one : read->people) EXPECT_FALSE(name_problem(one.name)) << one.name;
+    } else {
+      EXPECT_FALSE(read.error().message.empty());
+    }
+  }
+  EXPECT_GT(refused, kFiles / 2) << "the changes hit what matters";
+}
+
+TEST_F(IdentitiesFile, RefusesOneOfAnOlderVersionWithWhatToDo) {
+  ASSERT_TRUE(save_identities(some(1), file_));
+  auto file = nlohmann::json::from_cbor(bytes());
+  file["version"] = kIdentitiesVersion - 1;
+  const auto older = nlohmann::json::to_cbor(file);
+  write({older.begin(), older.end()});
+  const auto read = load_identities(file_);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("remove the file and enrol its people again"), std::string::npos)
+      << read.error().message;
+  EXPECT_FALSE(IdentitiesEdit::open(file_)) << "it stays until somebody removes it";
 }
 
 // Text that is taken for CBOR of another type too.

@@ -1,7 +1,12 @@
+#include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <random>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +29,47 @@ TEST(RecognitionTask, AnswersTheQuestionThatItWasWokenForAndNoSecondOne) {
   EXPECT_EQ(answer->face, 7U);
   EXPECT_FALSE(answer->match.label) << "nobody is enrolled";
   EXPECT_FALSE(recognizer.answer());
+}
+
+/// People whose faces are noise: to be compared with all of them takes longer than an image.
+person::FaceGallery crowd(person::Label people) {
+  person::FaceGallery gallery;
+  std::mt19937 random(1);
+  for (person::Label person = 1; person <= people; ++person) {
+    for (int view = 0; view < 2; ++view) {
+      person::FaceView noise{};
+      for (auto& value : noise) value = static_cast<std::uint8_t>(random() % 64);
+      gallery.enroll(person, noise);
+    }
+  }
+  return gallery;
+}
+
+// The frame path asks, hears nothing and goes on: no image is late because a face takes long.
+TEST(RecognitionTask, HoldsNobodyUpWhileItComparesAndLearns) {
+  constexpr int kSide = 180;
+  constexpr std::size_t kPasses = 4;  // of the frame path at least, while one face is named
+  Links links;
+  LinkedRecognizer recognizer(links);
+  RecognitionTask task(crowd(200), links);
+  person::GreyPatch crop{kSide, kSide, std::vector<std::uint8_t>(std::size_t{kSide} * kSide)};
+  for (std::size_t i = 0; i < crop.pixels.size(); ++i) crop.pixels[i] = static_cast<std::uint8_t>(i * i % 251);
+  ASSERT_TRUE(recognizer.ask({1, crop}));
+  std::thread thread([&] { task.step(); });
+  const RealClock clock;
+  std::vector<double> held_s;
+  std::optional<person::FaceAnswer> answer;
+  while (!answer) {
+    const MonoTime before = clock.now();
+    answer = recognizer.answer();
+    held_s.push_back(to_seconds(clock.now() - before));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  thread.join();
+  EXPECT_EQ(answer->face, 1U);
+  EXPECT_GT(held_s.size(), kPasses) << "it answered at once: the gallery is too small to show anything";
+  std::ranges::nth_element(held_s, held_s.begin() + static_cast<std::ptrdiff_t>(held_s.size() / 2));
+  EXPECT_LT(held_s[held_s.size() / 2], 1e-3);
 }
 
 TEST(RecognitionTask, HandsOverBetweenTwoThreads) {
