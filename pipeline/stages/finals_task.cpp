@@ -62,15 +62,16 @@ void FinalsTask::lose(Events& events) {
   follow_.follow_by_primary_only(true);
 }
 
-// Images in which no face is looked for, or none is found, say nothing against what was seen before.
+// Images in which no face is looked for, or none is found, say nothing against what was seen before; a stranger's is above the shirt in those too.
 Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   Decision decision = follow_.decide(frame, image, elapsed);
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
   if (people == nullptr) return decision;
   if (follow_.is_with_a_stranger() && state_ == FinalsState::kWith) lose(decision.events);
-  if (people->person.source != person::PersonSource::kFace) return decision;
-  if (people->person.person == person_) {
-    see_person(people->person, image, decision.events);
+  const person::PersonSighting& who = people->person;
+  if (who.source != person::PersonSource::kFace && who.person != person::kStranger) return decision;
+  if (who.person == person_) {
+    see_person(who, image, decision.events);
   } else {
     see_somebody_else(decision.events);
   }

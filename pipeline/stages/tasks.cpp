@@ -154,12 +154,13 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   const PersonState state = people != nullptr ? IdentifiedPeople::state_of(*people) : PersonState::kNobody;
   const bool enrolled = state == PersonState::kEnrolled;
   if (person_ == person::kStranger && enrolled) person_ = *who.person;
-  if (last_) last_->age += elapsed;
-  if (who.person) last_.reset();
   if (people != nullptr) look_above_the_shirt(*people);
+  const bool is_person = enrolled && who.person == person_;
+  if (last_) last_->age += elapsed;
+  if ((who.person && !is_person) || is_with_a_stranger()) last_.reset();
   const bool primary = who.source == person::PersonSource::kFace || who.source == person::PersonSource::kMarker;
   const bool believed = primary || !(by_primary_only_ || is_with_a_stranger());
-  if (enrolled && who.person == person_ && believed) last_ = sighting_of(who, image);
+  if (is_person && believed) last_ = sighting_of(who, image);
   const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
   std::string_view reason = behavior::to_string(follow.reason);
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";

@@ -88,6 +88,12 @@ TEST_F(Finals, TellsAStrangerOnceThatItHasLostThePerson) {
   EXPECT_EQ(see(person::kStranger, kFace, green_, 100), Words{});
 }
 
+TEST_F(Finals, AStrangersShirtCountsWhereHisFaceIsLost) {
+  see(1, kFace, green_);
+  EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
+  EXPECT_EQ(see(person::kStranger, kShirt, green_), Words{"you are somebody else: I have lost the person whom I follow"});
+}
+
 TEST_F(Finals, OneImageOfAStrangerIsNoStranger) {
   see(1, kFace, green_);
   EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});

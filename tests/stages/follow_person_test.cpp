@@ -126,6 +126,25 @@ TEST_F(FollowPerson, SaysThatItIsNotSureWhereAFaceHasNoNameYet) {
   EXPECT_EQ(IdentifiedPeople::state_of(frame.people.value), PersonState::kNobody);
 }
 
+// After a loss a shirt alone is not believed; between two images in which the face is looked for it says nothing against the person either.
+TEST_F(FollowPerson, GoesOnBetweenTwoFacesWhereAShirtIsNotBelieved) {
+  auto follower = task(4);
+  follower.follow_by_primary_only(true);
+  const FrameResult shirt_alone = [] {
+    FrameResult frame = shirt_with_a_strangers_face({306, 152, 30, 30});
+    frame.people.value.face_count = 0;
+    return frame;
+  }();
+  EXPECT_TRUE(follower.decide(shirt_alone, image_, kImage).halt) << "by a shirt nobody is found again";
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_FALSE(see(follower, face(4, 30.0)).halt);
+    EXPECT_FALSE(follower.decide(shirt_alone, image_, kImage).halt) << i;
+  }
+  Decision last;
+  for (int i = 0; i < 30; ++i) last = follower.decide(shirt_alone, image_, kImage);
+  EXPECT_TRUE(last.halt) << "nor followed for longer than a moment";
+}
+
 TEST_F(FollowPerson, GoesOnWhereAFewImagesShowNobodyAndStopsThen) {
   auto follower = task(4);
   for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
