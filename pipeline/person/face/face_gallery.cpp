@@ -55,40 +55,28 @@ double FaceGallery::distance(const FaceDescriptor& face, const FaceView& view) {
 }
 
 void FaceGallery::enroll(Label person, const FaceView& view) {
-  auto& views = people_[person].enrolled;
+  auto& views = people_[person];
   if (views.size() >= static_cast<std::size_t>(parameters_.max_views)) {
     views.erase(views.begin() + (views.size() > 1 ? 1 : 0));
   }
   views.push_back(view);
 }
 
-void FaceGallery::learn(Label person, const FaceView& view) {
-  const auto found = people_.find(person);
-  if (found == people_.end() || parameters_.max_learned_views == 0) return;
-  auto& views = found->second.learned;
-  if (views.size() >= static_cast<std::size_t>(parameters_.max_learned_views)) views.erase(views.begin());
-  views.push_back(view);
-}
-
 const std::vector<FaceView>* FaceGallery::views_of(Label person) const {
   const auto found = people_.find(person);
-  return found == people_.end() ? nullptr : &found->second.enrolled;
+  return found == people_.end() ? nullptr : &found->second;
 }
 
-const std::vector<FaceView>* FaceGallery::learned_views_of(Label person) const {
-  const auto found = people_.find(person);
-  return found == people_.end() ? nullptr : &found->second.learned;
-}
-
-FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label> without) const {
+FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label> without,
+                                const LearnedViews& learned) const {
   FaceMatch match;
   if (face.dense.empty()) return match;
   double second = 1.0;
   std::size_t compared = 0;
-  for (const auto& [person, known] : people_) {
-    if (person == without || known.enrolled.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
+  for (const auto& [person, views] : people_) {
+    if (person == without || views.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
     ++compared;
-    const Away away = from(face, known.enrolled, known.learned);
+    const Away away = from(face, views, person == learned.person ? learned.views : std::span<const FaceView>());
     match.alignment.move_towards(away.alignment, 1.0 / static_cast<double>(compared));
     if (away.distance < match.distance) {
       second = match.distance;

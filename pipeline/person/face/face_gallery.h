@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pipeline/person/classifier.h"
@@ -35,8 +36,8 @@ struct FaceMatchParameters {
     visit.number("max_views", self.max_views, Range{1, 50}, "",
                  "The number of views kept of a person; more replace the oldest but the first.");
     visit.number("max_learned_views", self.max_learned_views, Range{0, 20}, "",
-                 "The number of views kept besides, until the end of the run, that were learned while a person was "
-                 "followed; more replace the oldest. 0: none is learned.");
+                 "The number of views kept besides of a face that is followed, learned as it changes; more replace the "
+                 "oldest. 0: none is learned.");
     visit.number(
         "max_step", self.max_step, Range{0.0, 0.5}, "",
         "A face that is followed and no longer surely named is learned where it is no farther than this from "
@@ -57,40 +58,39 @@ struct FaceMatch {
       alignment{};  ///< how the face lies in its crop: against the nearest view of each person, in the mean over all.
 };
 
+/// Views of a person that were learned while his face was followed.
+struct LearnedViews {
+  Label person = 0;
+  std::span<const FaceView> views;
+};
+
 /// The faces that are known, several views each, and the decision whose a face is (ClassifyPriChar of Alg. 6.1). The dissertation (6.2.1) counts
 /// SIFT matches and names the person with most; here descriptors are compared place by place, and a face must be nearer to one person than to all
 /// others by a margin: how far faces are from each other depends on the light, the difference of two such distances hardly.
 ///
-/// Bounded: max_views and max_learned_views per person. Threads: one at a time; enrolled in the background, read when it is handed over.
+/// Bounded: max_views per person. Threads: one at a time; enrolled in the background, read when it is handed over.
 class FaceGallery {
  public:
   explicit FaceGallery(const FaceMatchParameters& parameters = {}) : parameters_(parameters) {}
 
   void enroll(Label person, const FaceView& view);
-  /// Train of a primary characteristic (Alg. 6.1): a view of somebody who is enrolled, kept beside those and never in their place. Ours; 6.2.4 leaves the
-  /// training of faces out.
-  /// Nothing happens where there is no such person.
-  void learn(Label person, const FaceView& view);
   /// \return whether there was such a person.
   bool forget(Label person) { return people_.erase(person) > 0; }
   [[nodiscard]] std::size_t people() const { return people_.size(); }
-  /// \return those that were enrolled, and those that were learned; nothing: there is no such person.
+  /// \return nothing: there is no such person.
   [[nodiscard]] const std::vector<FaceView>* views_of(Label person) const;
-  [[nodiscard]] const std::vector<FaceView>* learned_views_of(Label person) const;
   /// \return how far a face is from one view, as from a person who has no other.
   static double distance(const FaceDescriptor& face, const FaceView& view);
   [[nodiscard]] const FaceMatchParameters& parameters() const { return parameters_; }
 
-  /// \param without  this person is left out, as if he had not been enrolled.
+  /// \param without  this person is left out, as if he had not been enrolled.  \param learned  more views of somebody, for this face alone.
   /// Cost: 0.5 million instructions per view.
-  [[nodiscard]] FaceMatch identify(const FaceDescriptor& face, std::optional<Label> without = std::nullopt) const;
+  [[nodiscard]] FaceMatch identify(const FaceDescriptor& face, std::optional<Label> without = std::nullopt,
+                                   const LearnedViews& learned = {}) const;
 
  private:
   FaceMatchParameters parameters_;
-  struct Known {
-    std::vector<FaceView> enrolled, learned;
-  };
-  std::map<Label, Known> people_;
+  std::map<Label, std::vector<FaceView>> people_;
 };
 
 }  // namespace cgsr::person

@@ -15,14 +15,15 @@ struct Compared {
   FaceMatch match;
 };
 
-std::optional<Compared> compare(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without) {
+std::optional<Compared> compare(const GreyPatch& crop, const FaceGallery& gallery, std::optional<Label> without,
+                                const LearnedViews& learned = {}) {
   auto face = describe_crop(crop);
   if (!face) return std::nullopt;
-  FaceMatch match = gallery.identify(*face, without);
+  FaceMatch match = gallery.identify(*face, without, learned);
   if (match.alignment.is_small()) return Compared{std::move(*face), match};
   auto aligned = describe_crop(aligned_crop(crop, match.alignment));
   if (!aligned) return Compared{std::move(*face), match};
-  match = gallery.identify(*aligned, without);
+  match = gallery.identify(*aligned, without, learned);
   return Compared{std::move(*aligned), match};
 }
 
@@ -42,25 +43,39 @@ FaceTrainer::Followed& FaceTrainer::followed(std::uint32_t face) {
   return replaced;
 }
 
+std::size_t FaceTrainer::learned(std::uint32_t face) const {
+  const auto known = std::ranges::find(followed_, face, &Followed::face);
+  return known == followed_.end() ? 0 : known->learned.size();
+}
+
 FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   constexpr double kSure = 2.0;  // of the least margin that names a face
   constexpr int kTwice = 2;
-  const auto compared = compare(question.crop, gallery_, std::nullopt);
+  const auto known = std::ranges::find(followed_, question.face, &Followed::face);
+  const LearnedViews learned = known == followed_.end() ? LearnedViews{} : LearnedViews{known->person, known->learned};
+  const auto compared = compare(question.crop, gallery_, std::nullopt, learned);
   if (!compared) return {question.face, {}};
   const FaceMatch& match = compared->match;
   const FaceAnswer answer{question.face, match};
   if (match.margin <= 0.0) return answer;
   Followed& before = followed(question.face);
   if (match.margin >= kSure * gallery_.parameters().min_margin) {
-    before.sure = match.nearest == before.person ? before.sure + 1 : 1;
-    before.person = *match.nearest;
+    if (match.nearest != before.person) before = {.face = question.face, .person = *match.nearest};
+    ++before.sure;
     before.view = view_of(compared->face);
   } else if (match.nearest == before.person && before.sure >= kTwice &&
              FaceGallery::distance(compared->face, before.view) <= gallery_.parameters().max_step) {
     before.view = view_of(compared->face);
-    gallery_.learn(before.person, before.view);
+    learn(before);
   }
   return answer;
+}
+
+void FaceTrainer::learn(Followed& face) const {
+  const auto most = static_cast<std::size_t>(gallery_.parameters().max_learned_views);
+  if (most == 0) return;
+  if (face.learned.size() >= most) face.learned.erase(face.learned.begin());
+  face.learned.push_back(face.view);
 }
 
 bool SteppedRecognizer::ask(FaceQuestion&& question) {

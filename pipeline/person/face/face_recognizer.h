@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/face/grey_region.h"
@@ -34,9 +35,10 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
 /// Names the faces of questions, and learns new views of who is followed: the training of a primary characteristic by one that is surer (Alg. 6.1). Here that
 /// is the face's own past: whose it surely was a moment ago it still is, in another light or turned away, as long as it changes in small steps. A face that was
 /// surely named twice in a row, is followed as one track and is no longer surely named, but nearest to the same person still, is learned where it is near
-/// to how it was then: somebody else who comes before it is not. Ours; 6.2.4 leaves the training of faces out.
+/// to how it was then: somebody else who comes before it is not. What is learned counts for that face alone, as long as it is followed: in one light all faces
+/// are nearer to each other, and others would be nearer to that person than to everybody who was enrolled elsewhere. Ours; 6.2.4 leaves the training of faces out.
 ///
-/// Bounded: kFaces faces are remembered, and views as the gallery bounds them. Threads: one, the recogniser's.
+/// Bounded: kFaces faces are remembered, FaceMatchParameters::max_learned_views views of each. Threads: one, the recogniser's.
 class FaceTrainer {
  public:
   explicit FaceTrainer(FaceGallery gallery) : gallery_(std::move(gallery)) {}
@@ -44,7 +46,8 @@ class FaceTrainer {
   /// Cost: as identify_crop(), and half a million instructions where the name is not sure.
   FaceAnswer answer(const FaceQuestion& question);
 
-  [[nodiscard]] const FaceGallery& gallery() const { return gallery_; }
+  /// \return how many views were learned of a face.
+  [[nodiscard]] std::size_t learned(std::uint32_t face) const;
 
  private:
   static constexpr std::size_t kFaces = 4;
@@ -53,8 +56,10 @@ class FaceTrainer {
     Label person = 0;        // whose it was
     int sure = 0;            // answers in a row
     FaceView view{};         // how it was
+    std::vector<FaceView> learned{};
   };
   Followed& followed(std::uint32_t face);
+  void learn(Followed& face) const;
 
   FaceGallery gallery_;
   std::array<Followed, kFaces> followed_{};
