@@ -70,19 +70,26 @@ double mean_distance_among(const std::vector<FaceDescriptor>& faces, const std::
   return sum / static_cast<double>(chosen.size());
 }
 
-/// The faces that are alone in their image.
+/// The faces that are alone in their image. Where none is found it is looked for where the last one was: whoever is enrolled stays before the camera.
 Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enrolled& enrolled) {
   auto detector = open_face_detector(options);
   if (!detector) return tl::unexpected(detector.error());
   auto input = ImageInput::open({options.input, 0, 0, 0, 0});
   if (!input) return tl::unexpected(input.error());
   std::vector<FaceDescriptor> faces;
+  std::optional<Box> last;
   for (auto next = input->next(); !next.end && faces.size() < kMaxFaces; next = input->next()) {
     ++enrolled.images;
     if (!next.image) continue;
-    const auto found = detector->find_all(next.image.view());
-    if (found.size() != 1) continue;
-    if (auto face = person::describe_face(next.image.view(), found.front())) faces.push_back(std::move(*face));
+    const ImageView image = next.image.view();
+    const auto found = detector->find_all(image);
+    if (found.size() > 1) continue;
+    const auto face = found.empty() && last ? detector->find_near(image, *last)
+                      : found.empty()       ? std::nullopt
+                                            : std::optional(found.front());
+    if (!face) continue;
+    last = face;
+    if (auto described = person::describe_face(image, *face)) faces.push_back(std::move(*described));
   }
   enrolled.with_one_face = static_cast<int>(faces.size());
   if (faces.empty()) {
