@@ -14,7 +14,7 @@ struct FinalsParameters {
   static void describe(Self& self, Visitor& visit) {
     visit.number("images_to_be_sure", self.images_to_be_sure, {1, 100}, "",
                  "A face has to be the person's, or a stranger's, in so many images in a row in which it is looked for "
-                 "before it is spoken of.");
+                 "before it is spoken of; a stranger's that is lost after two of them is above the shirt still.");
     visit.number("images_of_shirt", self.images_of_shirt, {1, 1000}, "",
                  "Whether the shirt has changed is said when it was seen below the face in so many images.");
     visit.number("max_same_shirt", self.max_same_shirt, {0.0, 1.0}, "",

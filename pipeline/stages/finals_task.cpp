@@ -1,6 +1,11 @@
 #include "pipeline/stages/finals_task.h"
 
 namespace cgsr::stages {
+namespace {
+
+constexpr int kFacesOfALostOne = 2;  // images in which a stranger's face is seen, before the shirt below it counts as well
+
+}  // namespace
 
 std::string_view to_string(FinalsState state) {
   switch (state) {
@@ -62,14 +67,16 @@ void FinalsTask::lose(Events& events) {
   follow_.follow_by_primary_only(true);
 }
 
-// Images in which no face is looked for, or none is found, say nothing against what was seen before; a stranger's is above the shirt in those too.
+// Images in which no face is looked for, or none is found, say nothing against what was seen before. A stranger's that was decided on twice and is lost then is
+// still above the shirt.
 Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Duration elapsed) {
   Decision decision = follow_.decide(frame, image, elapsed);
   const IdentifiedPeople* const people = frame.people.within(Duration::zero());
   if (people == nullptr) return decision;
   if (follow_.is_with_a_stranger() && state_ == FinalsState::kWith) lose(decision.events);
   const person::PersonSighting& who = people->person;
-  if (who.source != person::PersonSource::kFace && who.person != person::kStranger) return decision;
+  const bool is_below_lost_face = who.person == person::kStranger && other_images_ >= kFacesOfALostOne;
+  if (who.source != person::PersonSource::kFace && !is_below_lost_face) return decision;
   if (who.person == person_) {
     see_person(who, image, decision.events);
   } else {

@@ -26,13 +26,12 @@ constexpr std::size_t kMaxProblems = 20;  // that the summary tells one by one
 constexpr const char* kColumns = "frame,identity,source,confidence,x,y,width,height";
 constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
 
-// How far faces are from somebody's views, by how far they are from each other.
-// Generated faces in one sitting: of one person .06 to .1, of two from .0885 on. In another light and distance those of one are .07 to .13 away. Of photographs
-// .02 to .11 and from .145 on.
-constexpr double kMuchFarther = 1.25;  // than from each other: somebody else's, where nothing says that it is the same person
-constexpr double kOtherwise = 1.7;     // the same, where it is said so
-constexpr double kAlike = 0.06;        // nearer than this are only images of one sitting,
-constexpr double kUnlike = 0.07;       // and farther only images of which some are bad
+// How far faces are from somebody's views, by how far they are from each other. Photographs of two people are farther; generated faces of two in one light
+// begin where those of one in two lights end, so that who looks alike may be refused (--alike), and whose light has changed may not be recognised as the same.
+constexpr double kMuchFarther = 1.25;      // somebody else's
+constexpr double kFartherThanNamed = 1.7;  // somebody else's than whose they are said to be
+constexpr double kAlike = 0.06;            // nearer than this are only images of one sitting,
+constexpr double kUnlike = 0.07;           // and farther only images of which some are bad
 
 double distance(const FaceDescriptor& face, const FaceView& view) {
   std::array<double, person::kViewSide * person::kViewSide> points{};
@@ -70,7 +69,7 @@ double mean_distance_among(const std::vector<FaceDescriptor>& faces, const std::
   return sum / static_cast<double>(chosen.size());
 }
 
-/// The faces that are alone in their image. Where none is found it is looked for where the last one was: whoever is enrolled stays before the camera.
+/// The faces that are alone in their image. Where none is found it is looked for where it was in the image before, as whoever is enrolled hardly moves.
 Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enrolled& enrolled) {
   auto detector = open_face_detector(options);
   if (!detector) return tl::unexpected(detector.error());
@@ -78,17 +77,23 @@ Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enr
   if (!input) return tl::unexpected(input.error());
   std::vector<FaceDescriptor> faces;
   std::optional<Box> last;
+  std::pair<int, int> last_size;
   for (auto next = input->next(); !next.end && faces.size() < kMaxFaces; next = input->next()) {
     ++enrolled.images;
     if (!next.image) continue;
     const ImageView image = next.image.view();
     const auto found = detector->find_all(image);
     if (found.size() > 1) continue;
+    if (std::pair(image.width_px, image.height_px) != last_size) last.reset();
     const auto face = found.empty() && last ? detector->find_near(image, *last)
                       : found.empty()       ? std::nullopt
                                             : std::optional(found.front());
-    if (!face) continue;
+    if (!face) {
+      last.reset();
+      continue;
+    }
     last = face;
+    last_size = {image.width_px, image.height_px};
     if (auto described = person::describe_face(image, *face)) faces.push_back(std::move(*described));
   }
   enrolled.with_one_face = static_cast<int>(faces.size());
@@ -159,7 +164,7 @@ bool are_unlike(const std::vector<FaceDescriptor>& faces, double among, const st
   for (const FaceView& view : views) hers.enroll(1, view);
   double sum = 0.0;
   for (const FaceDescriptor& face : faces) sum += hers.identify(face).distance;
-  return sum / static_cast<double>(faces.size()) > kOtherwise * std::clamp(among, kAlike, kUnlike);
+  return sum / static_cast<double>(faces.size()) > kFartherThanNamed * std::clamp(among, kAlike, kUnlike);
 }
 
 /// Adds the person whose faces these are to those who are known.

@@ -141,6 +141,26 @@ TEST(FaceTrainer, LearnsAFaceThatChangesWhileItIsFollowed) {
   EXPECT_EQ(trainer.answer(changed(1, kFar)).match.label, 2);
 }
 
+// What was learned of who was there says nothing of whoever comes before the face then.
+TEST(FaceTrainer, ForgetsWhatItLearnedWhereSomebodyElseTakesTheFacesPlace) {
+  FaceTrainer trainer = trainer_with();
+  follow_change(trainer, 1);
+  ASSERT_GT(trainer.learned(1), 0U);
+  EXPECT_FALSE(trainer.answer(question(1, 100)).match.label);
+  EXPECT_EQ(trainer.learned(1), 0U);
+}
+
+TEST(FaceTrainer, KeepsWhoIsAskedForThoughOthersComeAndGo) {
+  FaceTrainer trainer = trainer_with();
+  follow_change(trainer, 1);
+  ASSERT_GT(trainer.learned(1), 0U);
+  for (std::uint32_t passer_by = 10; passer_by < 40; ++passer_by) {
+    trainer.answer(question(passer_by, 100));
+    trainer.answer(changed(1, kFar));
+  }
+  EXPECT_GT(trainer.learned(1), 0U);
+}
+
 TEST(FaceTrainer, KeepsAtMostSoManyLearnedViews) {
   FaceTrainer trainer = trainer_with({.max_learned_views = 1});
   follow_change(trainer, 1);

@@ -139,6 +139,31 @@ TEST(FaceDescriptor, OfAFaceAtTheBorderIsFinite) {
   }
 }
 
+// Sums that run along a line leave a little where there is nothing: no descriptor may come of it, nor of a deviation below zero.
+TEST(FaceDescriptor, OfAFaceBeforeSaturatedWhiteIsThatOfTheFaceAlone) {
+  for (unsigned seed = 0; seed < 6; ++seed) {
+    const cv::Mat face = portrait(seed);
+    cv::Mat grey(face.size(), CV_8UC1, cv::Scalar(255)), inside(face.size(), CV_8UC1, cv::Scalar(0));
+    const cv::Point middle(static_cast<int>(kFace.x + kFace.width / 2), static_cast<int>(kFace.y + kFace.height / 2));
+    const int half = static_cast<int>(kFace.width / 2);
+    cv::ellipse(inside, middle, {half * 2 / 3, half}, 0.0, 0.0, 360.0, cv::Scalar(255), cv::FILLED);
+    face.copyTo(grey, inside);
+    const auto descriptor = describe_face(view_of_grey(grey), kFace);
+    ASSERT_TRUE(descriptor);
+    int described = 0;
+    for (std::size_t point = 0; point < std::size_t{kDenseSide} * kDenseSide; ++point) {
+      int square = 0;
+      for (std::size_t i = 0; i < kSiftSize; ++i) {
+        const int value = descriptor->dense[point * kSiftSize + i];
+        square += value * value;
+      }
+      EXPECT_LT(square, 255 * 255 * 1.05) << seed << ": point " << point;
+      described += square > 255 * 255 * 0.9 ? 1 : 0;
+    }
+    EXPECT_GT(described, kDenseSide * kDenseSide / 2) << seed;
+  }
+}
+
 TEST(GreyRegion, IsTheMeanWhereItShrinksAndTheBorderOutside) {
   cv::Mat yuyv(4, 4, CV_8UC2, cv::Scalar(0, 128));
   yuyv.row(0).setTo(cv::Scalar(100, 0));

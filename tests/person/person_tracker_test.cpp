@@ -193,6 +193,23 @@ TEST(PersonTracker, AStrangerStaysOneForASecondWithoutHisFace) {
   EXPECT_EQ(tracker.update({standing(kRed).view()}).person, 1) << "from behind the shirt alone counts";
 }
 
+TEST(PersonTracker, AStrangersFaceThatWasLostBesideTheShirtIsNotAboveIt) {
+  PersonTracker tracker;
+  learn(tracker, 1, kRed);
+  const Picture picture = standing(kRed);
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+  FaceSighting beside = face_of(std::nullopt);
+  beside.box.x = kShirtBox.x + kShirtBox.width + 10;
+  tracker.update({picture.view(), beside});
+  for (int image = 0; image < 30; ++image) {
+    Picture growing(kWall);
+    Box shirt = kShirtBox;
+    shirt.width += 2 * image;
+    growing.fill(shirt, kRed);
+    EXPECT_NE(tracker.update({growing.view()}).person, kStranger) << image;
+  }
+}
+
 TEST(PersonTracker, AStrangerIsOneNoLongerWhereThePersonsFaceIsSeen) {
   PersonTracker tracker;
   const Picture picture = standing(kRed);

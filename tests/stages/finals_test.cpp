@@ -91,6 +91,8 @@ TEST_F(Finals, TellsAStrangerOnceThatItHasLostThePerson) {
 TEST_F(Finals, AStrangersShirtCountsWhereHisFaceIsLost) {
   see(1, kFace, green_);
   EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
+  EXPECT_EQ(see(person::kStranger, kShirt, green_), Words{}) << "one image of a face decides nothing";
+  EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
   EXPECT_EQ(see(person::kStranger, kShirt, green_), Words{"you are somebody else: I have lost the person whom I follow"});
 }
 

@@ -25,6 +25,7 @@ constexpr int kReach = 3;    // steps by which a point may lie off
 constexpr int kSpacing = 3;  // steps between a view's points
 constexpr int kAround_px = 9;  // within which the contrast is made equal: a box, twice
 constexpr float kMinContrast = 0.01F;
+constexpr float kMinNorm = 0.1F;   // of a descriptor whose cells hold hundreds; less is what rounding leaves of nothing
 constexpr float kMaxShare = 0.2F;  // of a component, before the second normalisation (Lowe, 2004)
 
 static_assert(kDenseSide == (kViewSide - 1) * kSpacing + 2 * kReach + 1);
@@ -74,6 +75,7 @@ cv::Mat equal_contrast(const GreyPatch& patch) {
   face -= mean;
   deviation = face.mul(face);
   blur_twice(deviation, kAround_px);
+  deviation = cv::max(deviation, 0.0);  // running sums leave a little less than nothing where all is alike
   cv::sqrt(deviation, deviation);
   face /= deviation + kMinContrast;
   cv::GaussianBlur(face, face, {}, 1.6);
@@ -140,10 +142,16 @@ void describe_point(const cv::Mat& planes, int x_px, int y_px, std::uint8_t* out
       squares = _mm_add_ps(squares, _mm_mul_ps(four, four));
     }
   }
-  const __m128 per_norm = _mm_set1_ps(1.0F / (std::sqrt(sum_of(squares)) + 1e-9F));
-  __m128 sum = _mm_setzero_ps();
+  const float norm = std::sqrt(sum_of(squares));
+  if (norm < kMinNorm) {
+    std::fill_n(out, kSiftSize, std::uint8_t{0});
+    return;
+  }
+  const __m128 per_norm = _mm_set1_ps(1.0F / norm), zero = _mm_setzero_ps();
+  __m128 sum = zero;
   for (std::size_t i = 0; i < values.size(); i += 4) {
-    const __m128 four = _mm_min_ps(_mm_set1_ps(kMaxShare), _mm_mul_ps(_mm_loadu_ps(values.data() + i), per_norm));
+    const __m128 share = _mm_max_ps(zero, _mm_mul_ps(_mm_loadu_ps(values.data() + i), per_norm));
+    const __m128 four = _mm_min_ps(_mm_set1_ps(kMaxShare), share);
     _mm_storeu_ps(values.data() + i, four);
     sum = _mm_add_ps(sum, four);
   }

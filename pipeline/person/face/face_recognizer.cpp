@@ -34,13 +34,15 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
   return compared ? compared->match : FaceMatch{};
 }
 
+// In the order in which they were asked for, the latest last.
 FaceTrainer::Followed& FaceTrainer::followed(std::uint32_t face) {
-  const auto known = std::ranges::find(followed_, face, &Followed::face);
-  if (known != followed_.end()) return *known;
-  Followed& replaced = followed_[oldest_];
-  oldest_ = (oldest_ + 1) % kFaces;
-  replaced = {.face = face};
-  return replaced;
+  auto place = std::ranges::find(followed_, face, &Followed::face);
+  if (place == followed_.end()) {
+    place = followed_.begin();
+    *place = {.face = face};
+  }
+  std::rotate(place, place + 1, followed_.end());
+  return followed_.back();
 }
 
 std::size_t FaceTrainer::learned(std::uint32_t face) const {
@@ -51,20 +53,24 @@ std::size_t FaceTrainer::learned(std::uint32_t face) const {
 FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   constexpr double kSure = 2.0;  // of the least margin that names a face
   constexpr int kTwice = 2;
-  const auto known = std::ranges::find(followed_, question.face, &Followed::face);
-  const LearnedViews learned = known == followed_.end() ? LearnedViews{} : LearnedViews{known->person, known->learned};
-  const auto compared = compare(question.crop, gallery_, std::nullopt, learned);
+  Followed& before = followed(question.face);
+  auto compared = compare(question.crop, gallery_, std::nullopt, {before.person, before.learned});
   if (!compared) return {question.face, {}};
+  const auto is_near = [&] {
+    return FaceGallery::distance(compared->face, before.view) <= gallery_.parameters().max_step;
+  };
+  if (!before.learned.empty() && !is_near()) {
+    before = {.face = question.face};  // somebody else has come before the face that was followed
+    compared->match = gallery_.identify(compared->face);
+  }
   const FaceMatch& match = compared->match;
   const FaceAnswer answer{question.face, match};
   if (match.margin <= 0.0) return answer;
-  Followed& before = followed(question.face);
   if (match.margin >= kSure * gallery_.parameters().min_margin) {
     if (match.nearest != before.person) before = {.face = question.face, .person = *match.nearest};
     ++before.sure;
     before.view = view_of(compared->face);
-  } else if (match.nearest == before.person && before.sure >= kTwice &&
-             FaceGallery::distance(compared->face, before.view) <= gallery_.parameters().max_step) {
+  } else if (match.nearest == before.person && before.sure >= kTwice && is_near()) {
     before.view = view_of(compared->face);
     learn(before);
   }

@@ -50,7 +50,7 @@ class FaceTrainer {
   [[nodiscard]] std::size_t learned(std::uint32_t face) const;
 
  private:
-  static constexpr std::size_t kFaces = 4;
+  static constexpr std::size_t kFaces = 8;
   struct Followed {
     std::uint32_t face = 0;  // number of its track; 0: none
     Label person = 0;        // whose it was
@@ -63,7 +63,6 @@ class FaceTrainer {
 
   FaceGallery gallery_;
   std::array<Followed, kFaces> followed_{};
-  std::size_t oldest_ = 0;
 };
 
 /// Where the frame path has faces named: beside it, because naming a face costs about an image's time. Whoever asks goes on and looks

@@ -179,7 +179,8 @@ void PersonTracker::keep_face(const PersonImage& input, bool due) {
   const Box moved_from = std::exchange(shirt_before_, shirts_.box());
   if (!by_face_) return;
   const Box& shirt = shirt_before_;
-  const bool is_followed = !shirt.empty() && !intersection(shirt, moved_from).empty();
+  const bool is_followed =
+      !shirt.empty() && !intersection(shirt, moved_from).empty() && is_above(by_face_->box, moved_from);
   const bool is_kept = by_face_->person == kStranger && !input.face && is_followed && ++since_by_face_ <= kKept;
   if (due && !is_kept) {
     by_face_.reset();

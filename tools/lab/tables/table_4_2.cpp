@@ -98,14 +98,6 @@ geometry::Pose pose_at(int image, Reading reading) {
   return geometry::pose_on_floor(way * std::cos(facing), 0.05 * std::sin(1.3 * t), heading);
 }
 
-Result<void> write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) return fail(fmt::format("{}: cannot be written", path.string()));
-  return {};
-}
-
 /// A film on disk, with all that `cgsr localize` needs to follow it.
 struct Film42 {
   std::filesystem::path folder;

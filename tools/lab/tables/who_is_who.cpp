@@ -195,7 +195,7 @@ Result<Report> who_is_who(const Setting& setting) {
       "A line is drawn by the seed: who stands in it and where, who is not enrolled, heights, how heads turn. People "
       "stand .7 m apart, 1.6 m before the robot, and look at it.",
       "The dissertation's robot named four of five right (6.4.1.2).",
-      "The simulator draws a face for each of 100,000 numbers; every line takes five others. Intervals are over lines."};
+      "Who stands in a line is drawn among 100,000 people of the simulator. Intervals are over lines."};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
 }

@@ -218,7 +218,7 @@ Result<Report> who_is_who_home(const Setting& setting) {
       "%.",
       "Somebody is found where a person is told of within a metre in the end, at most 5 minutes after the run began. "
       "Who is not found at all counts 300 s.",
-      "The simulator draws a face for each of 100,000 numbers; every cast takes five others."};
+      "Who is in a cast is drawn among 100,000 people of the simulator."};
   report.notes.insert(report.notes.end(), wrong.begin(), wrong.end());
   return report;
 }
