@@ -3,7 +3,7 @@
 namespace cgsr::stages {
 namespace {
 
-constexpr int kFacesOfALostOne = 2;  // images in which a stranger's face is seen, before the shirt below it counts as well
+constexpr int kFacesOfALostOne = 2;  // images with a stranger's face, before the shirt below it counts as well
 
 }  // namespace
 

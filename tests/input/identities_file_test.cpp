@@ -188,7 +188,9 @@ std::vector<std::uint8_t> checksum_of(const std::vector<std::uint8_t>& bytes) {
 /// Some bytes changed, taken out, put in or cut off.
 std::vector<std::uint8_t> damaged(std::vector<std::uint8_t> bytes, std::mt19937& random) {
   const auto below = [&random](std::size_t count) { return random() % std::max<std::size_t>(count, 1); };
-  const auto place = [&] { return bytes.begin() + static_cast<std::ptrdiff_t>(below(std::min<std::size_t>(bytes.size(), 160))); };
+  const auto place = [&] {
+    return bytes.begin() + static_cast<std::ptrdiff_t>(below(std::min<std::size_t>(bytes.size(), 160)));
+  };
   for (std::size_t changes = 1 + below(3); changes > 0 && !bytes.empty(); --changes) {
     switch (below(4)) {
       case 0:

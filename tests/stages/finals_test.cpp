@@ -93,7 +93,8 @@ TEST_F(Finals, AStrangersShirtCountsWhereHisFaceIsLost) {
   EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
   EXPECT_EQ(see(person::kStranger, kShirt, green_), Words{}) << "one image of a face decides nothing";
   EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
-  EXPECT_EQ(see(person::kStranger, kShirt, green_), Words{"you are somebody else: I have lost the person whom I follow"});
+  EXPECT_EQ(see(person::kStranger, kShirt, green_),
+            Words{"you are somebody else: I have lost the person whom I follow"});
 }
 
 TEST_F(Finals, OneImageOfAStrangerIsNoStranger) {

@@ -21,8 +21,8 @@ constexpr int kStep_px = 4;    // of the dense grid
 constexpr int kFirst_px = 28;  // its first point
 constexpr int kCell_px = 5;    // of a descriptor
 constexpr int kDirections = 8;
-constexpr int kReach = 3;    // steps by which a point may lie off
-constexpr int kSpacing = 3;  // steps between a view's points
+constexpr int kReach = 3;      // steps by which a point may lie off
+constexpr int kSpacing = 3;    // steps between a view's points
 constexpr int kAround_px = 9;  // within which the contrast is made equal: a box, twice
 constexpr float kMinContrast = 0.01F;
 constexpr float kMinNorm = 0.1F;   // of a descriptor whose cells hold hundreds; less is what rounding leaves of nothing
@@ -113,7 +113,8 @@ struct Cell {
 std::array<Cell, 16> descriptor_cells() {
   std::array<Cell, 16> cells{};
   for (int i = 0; i < 16; ++i) {
-    const float column = static_cast<float>(i % 4) - 1.5F, row = static_cast<float>(i / 4) - 1.5F;
+    const int across = i % 4, down = i / 4;
+    const float column = static_cast<float>(across) - 1.5F, row = static_cast<float>(down) - 1.5F;
     const std::ptrdiff_t x_px = std::lround(column * kCell_px), y_px = std::lround(row * kCell_px);
     cells[static_cast<std::size_t>(i)] = {(y_px * kCrop_px + x_px) * kDirections,
                                           std::exp(-(column * column + row * row) / 8)};

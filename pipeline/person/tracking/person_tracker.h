@@ -114,7 +114,7 @@ class PersonTracker {
   FeedbackClassifier<PersonImage> feedback_;
   bool heads_first_ = false;               // the map of heads is made before that of shirts
   int since_face_ = 0;                     // images since one was looked for
-  std::optional<PersonSighting> by_face_;  // who was decided on by face when faces were last looked for, a stranger in the last second
+  std::optional<PersonSighting> by_face_;  // who was decided on by face lately, see keep_face()
   int since_by_face_ = 0;                  // images
   Box shirt_before_;                       // in the last image
   std::vector<Size> sizes_;                // of those whose shirts are known, and of whoever was measured last
