@@ -80,11 +80,14 @@ void StatisticsSink::count_outputs(const ImageReport& report) {
   });
 }
 
+// What the robot says is rare, and what somebody looks for after a long run.
 void StatisticsSink::keep_events(const ImageReport& report) {
+  const auto is_not_said = [](const EventRecord& record) { return record.event.source != "says"; };
   stages::for_each_event(report.frame, [&](const stages::Event& event) {
     run_.events.push_back({event, report.record.image_sequence, seconds_of(report.record.stamp)});
     if (run_.events.size() <= RunStatistics::kMaxEvents) return;
-    run_.events.pop_front();
+    const auto oldest = std::ranges::find_if(run_.events, is_not_said);
+    run_.events.erase(oldest == run_.events.end() ? run_.events.begin() : oldest);
     ++run_.earlier_events;
   });
 }

@@ -49,7 +49,7 @@ struct RunStatistics {
   double fastest_radps = 0.0;
   MotionStatus last_motion;
   stages::PoseEstimate last_pose;
-  std::deque<EventRecord> events;         ///< in order, the last kMaxEvents.
+  std::deque<EventRecord> events;         ///< in order: what was said, and the last ones up to kMaxEvents.
   std::uint64_t earlier_events = 0;       ///< that are not among them.
   std::vector<SwitchRecord> switchings;   ///< of lamps, in order.
   std::vector<OutputStatistics> outputs;  ///< in the order of for_each_output.

@@ -122,48 +122,6 @@ TEST(PersonTracker, LearnsNoShirtThatIsOutOfViewBelowItsFace) {
   EXPECT_FALSE(tracker.shirts().knows(1));
 }
 
-// 6.4.3: a stranger in the same shirt is noticed by his face, which teaches the shirt nothing.
-TEST(PersonTracker, CallsAStrangerInTheSameShirtAStranger) {
-  PersonTracker tracker;
-  learn(tracker, 1, kRed);
-  const Picture picture = standing(kRed);
-  while (!tracker.face_is_due()) tracker.update({picture.view()});
-  const auto stranger = tracker.update({picture.view(), face_of(std::nullopt)});
-  EXPECT_EQ(stranger.person, kStranger);
-  EXPECT_EQ(stranger.source, PersonSource::kFace);
-  EXPECT_TRUE(tracker.shirts().knows(1));
-}
-
-/// Red is person 1's shirt, and a stranger's face was just decided on above it.
-void meet_a_stranger_in_red(PersonTracker& tracker) {
-  learn(tracker, 1, kRed);
-  const Picture picture = standing(kRed);
-  while (!tracker.face_is_due()) tracker.update({picture.view()});
-  ASSERT_EQ(tracker.update({picture.view(), face_of(std::nullopt)}).person, kStranger);
-}
-
-// A stranger who resembles somebody else who is enrolled: whether it is that one is open, that it is not the person whose shirt it is, is not.
-TEST(PersonTracker, IsNotNamedByTheShirtWhereTheFaceIsSurelyNoneOfThePersons) {
-  for (const Label nearest : {1, 2}) {
-    PersonTracker tracker;
-    learn(tracker, 1, kRed);
-    const Picture picture = standing(kRed);
-    while (!tracker.face_is_due()) tracker.update({picture.view()});
-    FaceSighting face = face_of(std::nullopt, 0.6);
-    face.match.nearest = nearest;
-    face.match.rules_out = 0.85;
-    const auto sighting = tracker.update({picture.view(), face, 1});
-    EXPECT_EQ(sighting.person, nearest == 1 ? 1 : kStranger);
-    if (nearest == 1) continue;
-    while (!tracker.face_is_due()) tracker.update({picture.view()});
-    face.match.label = 2;
-    EXPECT_EQ(tracker.update({picture.view(), face, 1}).person, kStranger) << "an unsure name is none";
-    while (!tracker.face_is_due()) tracker.update({picture.view()});
-    face.match.confidence = 0.8;
-    EXPECT_EQ(tracker.update({picture.view(), face, 1}).person, 2);
-  }
-}
-
 // The trunk that is followed can lie in a part of the shirt: a face above all of it is above it.
 TEST(IsAbove, OfAFaceOverTheTrunk) {
   constexpr Box kFace{300, 150, 60, 60};
@@ -172,59 +130,6 @@ TEST(IsAbove, OfAFaceOverTheTrunk) {
   EXPECT_FALSE(is_above(kFace, {270, 420, 120, 60})) << "below the trunk";
   EXPECT_FALSE(is_above(kFace, {400, 230, 120, 190})) << "beside it";
   EXPECT_FALSE(is_above(kFace, {270, 100, 120, 190})) << "before it";
-}
-
-// His face is lost for some images where the robot sways: his shirt does not name the person again meanwhile.
-TEST(PersonTracker, AStrangerStaysOneForASecondWithoutHisFace) {
-  PersonTracker tracker;
-  meet_a_stranger_in_red(tracker);
-  int stranger_images = 0;
-  for (int image = 1; image <= 60; ++image) {
-    Picture swaying(kWall);
-    Box shirt = kShirtBox;
-    shirt.y += 3 * (image % 5);
-    swaying.fill(shirt, kRed);
-    const auto sighting = tracker.update({swaying.view()});
-    if (sighting.person != kStranger) break;
-    EXPECT_EQ(sighting.source, PersonSource::kShirt);
-    ++stranger_images;
-  }
-  EXPECT_NEAR(stranger_images, 30, 2);
-  EXPECT_EQ(tracker.update({standing(kRed).view()}).person, 1) << "from behind the shirt alone counts";
-}
-
-TEST(PersonTracker, AStrangersFaceThatWasLostBesideTheShirtIsNotAboveIt) {
-  PersonTracker tracker;
-  learn(tracker, 1, kRed);
-  const Picture picture = standing(kRed);
-  while (!tracker.face_is_due()) tracker.update({picture.view()});
-  FaceSighting beside = face_of(std::nullopt);
-  beside.box.x = kShirtBox.x + kShirtBox.width + 10;
-  tracker.update({picture.view(), beside});
-  for (int image = 0; image < 30; ++image) {
-    Picture growing(kWall);
-    Box shirt = kShirtBox;
-    shirt.width += 2 * image;
-    growing.fill(shirt, kRed);
-    EXPECT_NE(tracker.update({growing.view()}).person, kStranger) << image;
-  }
-}
-
-TEST(PersonTracker, AStrangerIsOneNoLongerWhereThePersonsFaceIsSeen) {
-  PersonTracker tracker;
-  const Picture picture = standing(kRed);
-  meet_a_stranger_in_red(tracker);
-  while (!tracker.face_is_due()) tracker.update({picture.view()});
-  EXPECT_EQ(tracker.update({picture.view(), face_of(1)}).person, 1);
-  EXPECT_EQ(tracker.update({picture.view()}).person, 1);
-}
-
-TEST(PersonTracker, AStrangerBesideThePersonSaysNothingOfHisShirt) {
-  PersonTracker tracker;
-  meet_a_stranger_in_red(tracker);
-  Picture elsewhere;
-  elsewhere.fill({10, 80, 80, 100}, kRed);
-  EXPECT_EQ(tracker.update({elsewhere.view()}).person, 1);
 }
 
 // Two primaries that disagree: the surer one decides, the marker where they are equal.
@@ -277,84 +182,6 @@ TEST(PersonTracker, KeepsToTheShirtOfThePersonOfInterestBesideALargerOne) {
   }
   const Picture blue = standing(kBlue);
   EXPECT_EQ(tracker.update({blue.view(), std::nullopt, 1}).person, 2) << "who is of interest is not there";
-}
-
-/// The shirt of person 1 is as long as kShirtBox, that of person 2 half as long; both were seen below faces of one size.
-constexpr Box kShortShirt{120, 80, 80, 50};
-
-Picture in_short_shirt() {
-  Picture picture;
-  picture.fill(kShortShirt, kBlue);
-  return picture;
-}
-
-void measure_both(PersonTracker& tracker) {
-  for (const Label person : {2, 1}) {
-    const Picture picture = person == 1 ? standing(kRed) : in_short_shirt();
-    for (int image = 0; image < 60; ++image) tracker.update({picture.view(), face_of(person)});
-    ASSERT_TRUE(tracker.shirts().knows(person));
-  }
-}
-
-PersonTrackerParameters by_blobs() {
-  PersonTrackerParameters parameters;
-  parameters.shirt.place.enabled = false;
-  parameters.face_color.enabled = false;
-  return parameters;
-}
-
-TEST(PersonTracker, TellsHowFarAwayAShirtIsByTheSizeOfItsOwnPerson) {
-  PersonTracker tracker(by_blobs());
-  measure_both(tracker);
-  for (const Picture& picture : {in_short_shirt(), standing(kRed)}) {
-    PersonSighting turned;
-    for (int image = 0; image < 4; ++image) turned = tracker.update({picture.view()});
-    ASSERT_EQ(turned.source, PersonSource::kShirt);
-    EXPECT_NEAR(turned.face_px, kFaceBox.width, 2.0) << "of person " << *turned.person;
-  }
-}
-
-// He comes back nearer, so that a border of the image cuts the shirt: 1.5 times as large, and less of its height is in view than from afar.
-TEST(PersonTracker, TellsHowFarAwayAShirtIsThatTheImageCuts) {
-  PersonTracker tracker(by_blobs());
-  measure_both(tracker);
-  for (const double top : {-90.0, 150.0}) {
-    const Picture empty;
-    for (int image = 0; image < 6; ++image) tracker.update({empty.view()});
-    Picture picture;
-    const Box near{100, top, 1.5 * kShirtBox.width, 1.5 * kShirtBox.height};
-    picture.fill(intersection(near, {0, 0, kWidth, kHeight}), kRed);
-    PersonSighting turned;
-    for (int image = 0; image < 4; ++image) turned = tracker.update({picture.view()});
-    ASSERT_EQ(turned.source, PersonSource::kShirt);
-    EXPECT_NEAR(turned.face_px, 1.5 * kFaceBox.width, 3.0) << "its upper edge at " << top;
-  }
-}
-
-TEST(PersonTracker, KeepsTheSizesOfThoseWhomItKnowsHoweverManyPass) {
-  PersonTracker tracker(by_blobs());
-  measure_both(tracker);
-  const Picture empty;
-  for (Label passer_by = 100; passer_by < 150; ++passer_by) {
-    FaceSighting face = face_of(passer_by);
-    face.box = {20, 20, 30, 30};
-    for (int image = 0; image < 2; ++image) tracker.update({empty.view(), face});
-  }
-  const Picture red = standing(kRed);
-  for (int image = 0; image < 4; ++image) tracker.update({red.view()});
-  EXPECT_NEAR(tracker.update({red.view()}).face_px, kFaceBox.width, 2.0);
-}
-
-// 6.3.1: somebody else's face, far away, says nothing of how wide the person's shirt may be.
-TEST(PersonTracker, JudgesTheSizeOfAShirtByTheFaceOfItsOwnPerson) {
-  PersonTracker tracker(by_blobs());
-  learn(tracker, 1, kRed);
-  const Picture picture = standing(kRed);
-  FaceSighting far = face_of(2);
-  far.box = {260, 40, 12, 12};
-  for (int image = 0; image < 4; ++image) tracker.update({picture.view(), far});
-  for (int image = 0; image < 4; ++image) tracker.update({picture.view()});
-  EXPECT_EQ(tracker.update({picture.view()}).person, 1);
 }
 
 /// The shirt alone, once the face that was seen last says nothing any longer. \return whose it is.

@@ -143,6 +143,20 @@ TEST(StatisticsSink, KeepsTheLastEventsOfALongRun) {
   EXPECT_EQ(sink.run().events.back().image, images - 1);
 }
 
+TEST(StatisticsSink, KeepsWhatWasSaidHoweverLongTheRun) {
+  StatisticsSink sink(schedule());
+  const MotionStatus motion;
+  stages::FrameResult said;
+  said.decision.age = Duration::zero();
+  said.decision.value.events.add({"says", "I know you", {}});
+  const stages::FrameResult frame = frame_with_events();
+  ASSERT_TRUE(sink.on_image({said, record_of(0), motion, nullptr}));
+  for (std::uint64_t i = 1; i <= RunStatistics::kMaxEvents; ++i)
+    ASSERT_TRUE(sink.on_image({frame, record_of(i), motion, nullptr}));
+  EXPECT_EQ(sink.run().events.size(), RunStatistics::kMaxEvents);
+  EXPECT_EQ(sink.run().events.front().event.source, "says");
+}
+
 TEST(TraceSink, ShowsEventsAsInstants) {
   const test::ScratchFolder scratch;
   auto sink = std::move(*TraceSink::create((scratch / "trace.json").string(), schedule()));
