@@ -14,6 +14,7 @@
 #include "pipeline/person/face/face_detector.h"
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/face/grey_region.h"
+#include "tests/person/drawn_face.h"
 
 namespace cgsr::person {
 namespace {
@@ -203,6 +204,41 @@ TEST(GreyRegion, IsNearlyTheSameWhereItIsCutQuickly) {
   }
   EXPECT_TRUE(quick_grey_region(view_of_grey(grey), {400, 0, 20, 20}, 10, 10).pixels.empty());
   EXPECT_TRUE(quick_grey_region({}, {0, 0, 20, 20}, 10, 10).pixels.empty());
+}
+
+TEST(GreyRegion, IsStretchedByNoMoreThanIsAskedAndWithoutASingleBrightPixel) {
+  GreyPatch patch{100, 10, std::vector<std::uint8_t>(1000, 100)};
+  for (std::size_t i = 0; i < 500; ++i) patch.pixels[i] = 120;
+  patch.pixels[999] = 255;
+  GreyPatch much = patch;
+  stretch_contrast(patch, 3.0);
+  EXPECT_EQ(patch.pixels[700], 0);
+  EXPECT_EQ(patch.pixels[0], 60);
+  EXPECT_EQ(patch.pixels[999], 255);
+  stretch_contrast(much, 100.0);
+  EXPECT_EQ(much.pixels[0], 255);
+  GreyPatch plain{2, 2, {7, 7, 7, 7}}, nothing;
+  stretch_contrast(plain, 3.0);
+  stretch_contrast(nothing, 3.0);
+  EXPECT_EQ(plain.pixels, (std::vector<std::uint8_t>{0, 0, 0, 0}));
+  EXPECT_TRUE(nothing.pixels.empty());
+}
+
+// Of a face in so little light the grey values deviate by less than ten, which the cascade alone passes over.
+TEST(FaceDetector, FindsAFaceOfLittleContrast) {
+  FaceDetector detector = detector_of_debian();
+  cv::Mat bright(480, 640, CV_8UC1, cv::Scalar(120));
+  draw_face(bright, 300, 200, 110);
+  std::size_t found = 0;
+  for (const double contrast : {1.0, 0.5, 0.25, 0.15}) {
+    cv::Mat grey;
+    bright.convertTo(grey, CV_8U, contrast, 20.0);
+    found += detector.find_all(view_of_grey(grey)).size() == 1 ? 1 : 0;
+    const auto near = detector.find_near(view_of_grey(grey), {240, 140, 120, 120});
+    ASSERT_TRUE(near) << contrast;
+    EXPECT_NEAR(near->x + near->width / 2, 300, 15);
+  }
+  EXPECT_EQ(found, 4U);
 }
 
 TEST(FaceDetector, LooksThroughAWholeImageInAFewSteps) {

@@ -34,6 +34,16 @@ struct Cut {
 constexpr Cut kRoughCut{kWindow_px, 104.0, 90.0};
 constexpr Cut kCloseCut{kClose_px, 130.0, 100.0};
 
+// OpenCV's cascade passes over every window whose grey values deviate by less than ten: a face in little light, or whose brows and hair are
+// nearly as light as its skin, in the values 16 to 235 of a camera. What it looks at is stretched, by no more than noise allows.
+constexpr double kMaxStretch = 3.0;
+
+GreyPatch patch_for_cascade(const ImageView& image, const Box& region, int width_px, int height_px) {
+  GreyPatch patch = quick_grey_region(image, region, width_px, height_px);
+  if (!patch.pixels.empty()) stretch_contrast(patch, kMaxStretch);
+  return patch;
+}
+
 int tiles_along(double length_px, double tile_px, double overlap_px) {
   if (length_px <= tile_px) return 1;
   return 1 + static_cast<int>(std::ceil((length_px - tile_px) / (tile_px - overlap_px)));
@@ -111,7 +121,7 @@ void look_at(const ImageView& image, const SearchStep& slice, double face_px, in
   const Box& region = slice.region;
   const int width = static_cast<int>(std::lround(region.width * scale));
   const int height = static_cast<int>(std::lround(region.height * scale));
-  const GreyPatch patch = quick_grey_region(image, region, width, height);
+  const GreyPatch patch = patch_for_cascade(image, region, width, height);
   if (patch.pixels.empty()) return;
   for (const cv::Rect& r : detect(cascade, patch, kScaleStep, neighbors, face_px, slice.max_face_px * scale + 1)) {
     const Box face{region.x + r.x / scale, region.y + r.y / scale, r.width / scale, r.height / scale};
@@ -151,7 +161,7 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
   const double scale = kExpectedFace_px / expected.width;
   const Box region{expected.x + (expected.width - side) / 2, expected.y + (expected.height - side) / 2, side, side};
   const int size = static_cast<int>(std::lround(side * scale));
-  const GreyPatch patch = quick_grey_region(image, region, size, size);
+  const GreyPatch patch = patch_for_cascade(image, region, size, size);
   if (patch.pixels.empty()) return std::nullopt;
   std::optional<Box> nearest;
   for (const cv::Rect& r : detect(cascade_->classifier, patch, kNearStep, parameters_.min_neighbors, kClose_px,

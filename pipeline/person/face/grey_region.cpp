@@ -1,6 +1,7 @@
 #include "pipeline/person/face/grey_region.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <opencv2/imgproc.hpp>
@@ -80,6 +81,22 @@ GreyPatch quick_grey_region(const ImageView& image, const Box& region, int width
     luma = halved;
   }
   return scaled_to(luma, width_px, height_px, cv::INTER_LINEAR);
+}
+
+void stretch_contrast(GreyPatch& patch, double max_factor) {
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t value : patch.pixels) ++counts[value];
+  const std::size_t cut_off = patch.pixels.size() / 500;
+  std::size_t darkest = 0, brightest = counts.size() - 1;
+  for (std::size_t below = counts[darkest]; below <= cut_off && darkest < brightest;) below += counts[++darkest];
+  for (std::size_t above = counts[brightest]; above <= cut_off && brightest > darkest;) above += counts[--brightest];
+  const double factor =
+      std::min(max_factor, 255.0 / static_cast<double>(std::max<std::size_t>(1, brightest - darkest)));
+  std::array<std::uint8_t, 256> stretched{};
+  for (std::size_t value = darkest; value < stretched.size(); ++value) {
+    stretched[value] = static_cast<std::uint8_t>(std::min(255.0, factor * static_cast<double>(value - darkest)));
+  }
+  for (std::uint8_t& value : patch.pixels) value = stretched[value];
 }
 
 }  // namespace cgsr::person

@@ -26,4 +26,7 @@ GreyPatch grey_region(const ImageView& image, const Box& region, int width_px, i
 /// be left out, and the rest is stretched over its place.
 GreyPatch quick_grey_region(const ImageView& image, const Box& region, int width_px, int height_px);
 
+/// Spreads a patch's values over 0 to 255, but no farther than by a factor; a few in a thousand of the darkest and the brightest are cut off.
+void stretch_contrast(GreyPatch& patch, double max_factor);
+
 }  // namespace cgsr::person
