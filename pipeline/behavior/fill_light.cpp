@@ -11,9 +11,20 @@ std::string_view FillLight::reason_to_end() const {
   return {};
 }
 
+bool FillLight::is_needed(const FaceEvidence& evidence, double passed_s) {
+  since_without_s_ += passed_s;
+  if (evidence.seen && evidence.dark >= parameters_.min_dark) {
+    without_s_ += passed_s;
+    since_without_s_ = 0.0;
+  }
+  if (since_without_s_ >= parameters_.rest_s) without_s_ = 0.0;
+  return without_s_ < parameters_.face_s;
+}
+
 std::string_view FillLight::reason_to_begin(const FaceEvidence& evidence, double passed_s) {
   constexpr double kJust_s = 4.0, kLost_s = 0.3;
-  const bool faceless = evidence.expected && !evidence.seen && evidence.dark >= parameters_.min_dark;
+  const bool needed = is_needed(evidence, passed_s);
+  const bool faceless = needed && evidence.expected && !evidence.seen && evidence.dark >= parameters_.min_dark;
   faceless_s_ = faceless ? faceless_s_ + passed_s : 0.0;
   lost_s_ += evidence.lost ? passed_s : 0.0;
   held_ = has_shown_ && evidence.dark >= parameters_.min_dark && in_state_s_ <= kJust_s && lost_s_ >= kLost_s;
@@ -24,6 +35,7 @@ std::string_view FillLight::reason_to_begin(const FaceEvidence& evidence, double
 
 FillLightDecision FillLight::turn(bool on, std::string_view reason) {
   on_ = on;
+  without_s_ = since_without_s_ = 0.0;
   in_state_s_ = faceless_s_ = face_s_ = gone_s_ = lost_s_ = 0.0;
   return {on_, true, reason};
 }

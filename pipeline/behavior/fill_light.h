@@ -30,7 +30,8 @@ struct FillLightDecision {
 ///   off -> on   it has just gone out after it showed a face, and whoever was there is not seen by anything in some images: it is held on now, whether a
 ///               face is seen or not, until one of the two other reasons
 ///
-/// Otherwise it stays off for rest_s afterwards, or for fruitless_rest_s where it showed no face: it cannot flicker, however the light itself changes what is seen.
+/// Where faces were seen in the dark without it for face_s, it is not needed: whoever turns away shows no face in any light, and it stays off until none was seen
+/// for rest_s. Otherwise it stays off for rest_s afterwards, or for fruitless_rest_s where it showed no face: it cannot flicker, however the light itself changes what is seen.
 /// While it is on, darkness is not asked. Ours.
 ///
 /// Threads: one. Allocates nothing.
@@ -46,6 +47,7 @@ class FillLight {
   [[nodiscard]] std::string_view reason_to_end() const;
   FillLightDecision turn(bool on, std::string_view reason);
   [[nodiscard]] std::string_view reason_to_begin(const FaceEvidence& evidence, double passed_s);
+  [[nodiscard]] bool is_needed(const FaceEvidence& evidence, double passed_s);
 
   FillLightParameters parameters_;
   bool on_ = false;
@@ -55,6 +57,8 @@ class FillLight {
   double gone_s_ = 0.0;      // with nobody there, without a break
   double lost_s_ = 0.0;      // off, with nobody seen by anything, all together
   double rest_s_ = 0.0;      // how long it has to stay off now
+  double without_s_ = 0.0;        // with a face in the dark while it was off, all together
+  double since_without_s_ = 0.0;  // since the last of them
   bool has_shown_ = false;   // a face, when it was on last
   bool held_ = false;        // without it nobody was seen
 };
