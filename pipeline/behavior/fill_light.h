@@ -51,16 +51,16 @@ class FillLight {
 
   FillLightParameters parameters_;
   bool on_ = false;
-  double in_state_s_ = 0.0;  // since it was switched
-  double faceless_s_ = 0.0;  // somebody there in the dark without a face, without a break
-  double face_s_ = 0.0;      // with a face since it is on, all together
-  double gone_s_ = 0.0;      // with nobody there, without a break
-  double lost_s_ = 0.0;      // off, with nobody seen by anything, all together
-  double rest_s_ = 0.0;      // how long it has to stay off now
+  double in_state_s_ = 0.0;       // since it was switched
+  double faceless_s_ = 0.0;       // somebody there in the dark without a face, without a break
+  double face_s_ = 0.0;           // with a face since it is on, all together
+  double gone_s_ = 0.0;           // with nobody there, without a break
+  double lost_s_ = 0.0;           // off, with nobody seen by anything, all together
+  double rest_s_ = 0.0;           // how long it has to stay off now
   double without_s_ = 0.0;        // with a face in the dark while it was off, all together
   double since_without_s_ = 0.0;  // since the last of them
-  bool has_shown_ = false;   // a face, when it was on last
-  bool held_ = false;        // without it nobody was seen
+  bool has_shown_ = false;        // a face, when it was on last
+  bool held_ = false;             // without it nobody was seen
 };
 
 }  // namespace cgsr::behavior

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <numbers>
 #include <optional>
 
 namespace cgsr::person {
@@ -89,6 +91,34 @@ double blur_of(const ImageView& image, const Box& region) {
     }
   }
   return differences > 0 ? 1.0 - static_cast<double>(lost) / static_cast<double>(differences) : 0.0;
+}
+
+double signal_to_noise(const ImageView& image, const Box& region) {
+  constexpr int kMinWidth = 16;
+  constexpr double kRounding = 0.29;  // the standard deviation of what is rounded to whole grey values
+  const Box part = intersection(region, {1, 1, double(image.width_px - 2), double(image.height_px - 2)});
+  if (image.empty() || image.format != PixelFormat::kYuyv || std::min(part.width, part.height) < kMinWidth)
+    return kNoNoise;
+  double sum = 0.0, squares = 0.0, masked = 0.0;
+  for (int i = 0; i < kAcross; ++i) {
+    const int y = static_cast<int>(part.y + (i + 0.5) * part.height / kAcross);
+    const std::array rows{image.row(y - 1), image.row(y), image.row(y + 1)};
+    for (int j = 0; j < kAcross; ++j) {
+      const int x = static_cast<int>(part.x + (j + 0.5) * part.width / kAcross);
+      const auto at = [&](std::size_t row, int dx) { return int{rows[row][std::ptrdiff_t{2} * (x + dx)]}; };
+      const int corners = at(0, -1) + at(0, 1) + at(2, -1) + at(2, 1);
+      const int sides = at(0, 0) + at(1, -1) + at(1, 1) + at(2, 0);
+      const double mean = (corners + sides + at(1, 0)) / 9.0;
+      sum += mean;
+      squares += mean * mean;
+      masked += std::abs(corners - 2 * sides + 4 * at(1, 0));
+    }
+  }
+  constexpr double kPlaces = kAcross * kAcross;
+  const double noise = std::max(kRounding, std::sqrt(std::numbers::pi / 2.0) / 6.0 * masked / kPlaces);
+  const double deviation2 = squares / kPlaces - sum * sum / (kPlaces * kPlaces);
+  return std::sqrt(std::max(0.0, deviation2 - noise * noise / 9.0)) /
+         noise;  // of the noise a mean of nine keeps a third
 }
 
 double reliability(Cue cue, const ImageContext& context, const ContextParameters& parameters) {

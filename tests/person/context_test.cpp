@@ -1,6 +1,8 @@
 #include "pipeline/person/context.h"
 
+#include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,6 +51,29 @@ TEST(Context, OfARegionIsThatOfThePixelsWithinTheImage) {
   EXPECT_LT(mean_luma(image, {0, 0, 32, 48}), 0.1);
   EXPECT_GT(mean_luma(image, {32, 0, 32, 48}), 0.9);
   EXPECT_EQ(mean_luma(image, {-100, 0, 50, 48}), 1.0);
+}
+
+// A ramp and a step in noise of a known deviation, and noise alone.
+TEST(Context, StandsOutOfTheNoiseByWhatIsNotNoise) {
+  constexpr int kWidth = 160, kHeight = 120;
+  const auto ratio = [](double contrast, double noise) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> deviate(0.0, 1.0);
+    std::vector<std::uint8_t> yuyv(std::size_t{2} * kWidth * kHeight, 128);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const double grey = 100.0 + contrast * (x < kWidth / 2 ? -1.0 : 1.0) + noise * deviate(random);
+        yuyv[2 * static_cast<std::size_t>(y * kWidth + x)] = static_cast<std::uint8_t>(std::lround(grey));
+      }
+    }
+    return signal_to_noise({yuyv.data(), kWidth, kHeight, 2 * kWidth, PixelFormat::kYuyv}, {10, 10, 140, 100});
+  };
+  EXPECT_NEAR(ratio(20.0, 2.0), 10.0, 2.0);
+  EXPECT_NEAR(ratio(4.0, 4.0), 1.0, 0.3);
+  EXPECT_LT(ratio(0.0, 4.0), 0.4);
+  EXPECT_GT(ratio(30.0, 0.0), 20.0) << "grey values are rounded";
+  EXPECT_EQ(ratio(0.0, 0.0), 0.0);
+  EXPECT_EQ(signal_to_noise({}, {10, 10, 140, 100}), kNoNoise);
 }
 
 // Bars two pixels wide, blurred along the rows by the mean of so many pixels: more and more is lost, and noise alone is not blurred.

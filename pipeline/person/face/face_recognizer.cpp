@@ -1,6 +1,7 @@
 #include "pipeline/person/face/face_recognizer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "pipeline/person/face/face_descriptor.h"
@@ -25,6 +26,15 @@ std::optional<Compared> compare(const GreyPatch& crop, const FaceGallery& galler
   if (!aligned) return Compared{std::move(*face), match};
   match = gallery.identify(*aligned, without, learned);
   return Compared{std::move(*aligned), match};
+}
+
+void allow_for_noise(double signal_to_noise, FaceMatch& match) {
+  constexpr double kNothing = 2.0, kAll = 3.5;
+  const double counted = std::clamp((signal_to_noise - kNothing) / (kAll - kNothing), 0.0, 1.0);
+  // A confidence is 1 - exp(-x) / 2: x is counted in part.
+  const auto less = [counted](double confidence) { return 1.0 - 0.5 * std::pow(2.0 * (1.0 - confidence), counted); };
+  if (!match.label) match.confidence = less(match.confidence);
+  if (match.rules_out > 0.0) match.rules_out = less(match.rules_out);
 }
 
 }  // namespace
@@ -63,7 +73,8 @@ FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
     before = {.face = question.face};  // somebody else has come before the face that was followed
     compared->match = gallery_.identify(compared->face);
   }
-  const FaceMatch& match = compared->match;
+  FaceMatch& match = compared->match;
+  allow_for_noise(question.signal_to_noise, match);
   const FaceAnswer answer{question.face, match};
   if (match.margin <= 0.0) return answer;
   if (match.margin >= kSure * gallery_.parameters().min_margin) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/person/context.h"
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/face/grey_region.h"
 
@@ -14,8 +15,9 @@ namespace cgsr::person {
 
 /// A face that is to be named.
 struct FaceQuestion {
-  std::uint32_t face = 0;  ///< the number of its track.
-  GreyPatch crop;          ///< as face_crop() cuts it.
+  std::uint32_t face = 0;             ///< the number of its track.
+  GreyPatch crop;                     ///< as face_crop() cuts it.
+  double signal_to_noise = kNoNoise;  ///< of the face in the image.
 };
 
 /// Whose face it is.
@@ -43,6 +45,7 @@ class FaceTrainer {
  public:
   explicit FaceTrainer(FaceGallery gallery) : gallery_(std::move(gallery)) {}
 
+  /// Noise makes a face farther from everybody, its own views too: of one that hardly stands out of it, 'a stranger's' and 'nobody else's' are less sure.
   /// Cost: as identify_crop(), and half a million instructions where the name is not sure.
   FaceAnswer answer(const FaceQuestion& question);
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "pipeline/person/context.h"
 #include "pipeline/person/face/face_descriptor.h"
 
 namespace cgsr::person {
@@ -134,7 +135,10 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
     if (wanted == nullptr || urgency(track) > urgency(*wanted)) wanted = &track;
   }
   if (wanted == nullptr) return std::nullopt;
-  FaceQuestion question{wanted->number, face_crop(image, wanted->box)};
+  const Box& box = wanted->box;
+  const double edge = 0.15 * box.width;  // where the background begins
+  const Box inner{box.x + edge, box.y + edge, box.width - 2 * edge, box.height - 2 * edge};
+  FaceQuestion question{wanted->number, face_crop(image, box), signal_to_noise(image, inner)};
   if (question.crop.pixels.empty()) return std::nullopt;
   return question;
 }

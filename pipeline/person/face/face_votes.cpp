@@ -26,6 +26,7 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
     if (answer.nearest != match_->nearest) match_->rules_out = 0.0;
     return;
   }
+  if (!match_ && !answer.label && answer.confidence < kClear) return;
   std::shift_right(votes_.begin(), votes_.end(), 1);
   votes_.front() = answer;
   vote_count_ = std::min(vote_count_ + 1, kVotes);
