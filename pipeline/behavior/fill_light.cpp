@@ -17,7 +17,9 @@ bool FillLight::is_needed(const FaceEvidence& evidence, double passed_s) {
     without_s_ += passed_s;
     since_without_s_ = 0.0;
   }
-  if (since_without_s_ >= parameters_.rest_s) without_s_ = 0.0;
+  nobody_s_ = evidence.lost ? nobody_s_ + passed_s : 0.0;
+  const bool another_may_come = nobody_s_ >= parameters_.gone_s;
+  if (since_without_s_ >= parameters_.rest_s || another_may_come) without_s_ = 0.0;
   return without_s_ < parameters_.face_s;
 }
 
@@ -27,7 +29,7 @@ std::string_view FillLight::reason_to_begin(const FaceEvidence& evidence, double
   const bool faceless = needed && evidence.expected && !evidence.seen && evidence.dark >= parameters_.min_dark;
   faceless_s_ = faceless ? faceless_s_ + passed_s : 0.0;
   lost_s_ += evidence.lost ? passed_s : 0.0;
-  held_ = has_shown_ && evidence.dark >= parameters_.min_dark && in_state_s_ <= kJust_s && lost_s_ >= kLost_s;
+  held_ = needed && has_shown_ && evidence.dark >= parameters_.min_dark && in_state_s_ <= kJust_s && lost_s_ >= kLost_s;
   if (held_) return "nobody is seen without it";
   if (in_state_s_ < rest_s_ || faceless_s_ < parameters_.no_face_s) return {};
   return "no face where one should be, and it is dark";
@@ -35,7 +37,7 @@ std::string_view FillLight::reason_to_begin(const FaceEvidence& evidence, double
 
 FillLightDecision FillLight::turn(bool on, std::string_view reason) {
   on_ = on;
-  without_s_ = since_without_s_ = 0.0;
+  without_s_ = since_without_s_ = nobody_s_ = 0.0;
   in_state_s_ = faceless_s_ = face_s_ = gone_s_ = lost_s_ = 0.0;
   return {on_, true, reason};
 }

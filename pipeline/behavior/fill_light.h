@@ -13,7 +13,7 @@ struct FaceEvidence {
       false;  ///< somebody is there by another characteristic and his face would be within the image, or nobody is known to be there and a face is waited for.
   bool seen = false;  ///< a face is there.
   double dark =
-      0.0;  ///< the share of the pixels at its place that are too dark for a hue, in [0, 1]; read only when expected.
+      0.0;  ///< the share of the pixels at its place that are too dark for a hue, in [0, 1]; where one is expected or seen.
   bool lost = false;  ///< nobody is seen by anything.
 };
 
@@ -31,7 +31,7 @@ struct FillLightDecision {
 ///               face is seen or not, until one of the two other reasons
 ///
 /// Where faces were seen in the dark without it for face_s, it is not needed: whoever turns away shows no face in any light, and it stays off until none was seen
-/// for rest_s. Otherwise it stays off for rest_s afterwards, or for fruitless_rest_s where it showed no face: it cannot flicker, however the light itself changes what is seen.
+/// for rest_s, or nobody was there for gone_s. Otherwise it stays off for rest_s afterwards, or for fruitless_rest_s where it showed no face: it cannot flicker, however the light itself changes what is seen.
 /// While it is on, darkness is not asked. Ours.
 ///
 /// Threads: one. Allocates nothing.
@@ -59,6 +59,7 @@ class FillLight {
   double rest_s_ = 0.0;           // how long it has to stay off now
   double without_s_ = 0.0;        // with a face in the dark while it was off, all together
   double since_without_s_ = 0.0;  // since the last of them
+  double nobody_s_ = 0.0;         // off, with nobody seen by anything, without a break
   bool has_shown_ = false;        // a face, when it was on last
   bool held_ = false;             // without it nobody was seen
 };

@@ -30,12 +30,16 @@ struct FillLightParameters {
     visit.number("no_face_s", self.no_face_s, {0.1, 60.0}, "s",
                  "The time without a face in the dark after which the light goes on.");
     visit.number("face_s", self.face_s, {0.1, 60.0}, "s",
-                 "The time with a face in view after which the light goes off.");
+                 "The time with a face in view after which the light goes off; seen in the dark without it for as "
+                 "long, it is not "
+                 "needed.");
     visit.number("gone_s", self.gone_s, {0.1, 60.0}, "s", "The time without anybody after which the light goes off.");
     visit.number("max_on_s", self.max_on_s, {1.0, 600.0}, "s",
                  "The longest time for which the light is on without a break.");
-    visit.number("rest_s", self.rest_s, {1.0, 3600.0}, "s",
-                 "The time for which the light stays off after it showed a face.");
+    visit.number(
+        "rest_s", self.rest_s, {1.0, 3600.0}, "s",
+        "The time for which the light stays off after it showed a face, and where it is not needed after the last face "
+        "that was seen without it.");
     visit.number("fruitless_rest_s", self.fruitless_rest_s, {1.0, 3600.0}, "s",
                  "The time for which it stays off after it showed none: dark hair from behind is dark in any light.");
   }

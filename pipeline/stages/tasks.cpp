@@ -119,6 +119,7 @@ void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const Imag
   behavior::FaceEvidence evidence;
   if (people != nullptr) {
     evidence.seen = people->person.source == person::PersonSource::kFace;
+    if (evidence.seen) evidence.dark = person::context_of(image, people->person.box).dark;
     const bool nobody = people->person.source == person::PersonSource::kNone;
     if (nobody) {  // waits for a face: of whom nothing is known yet the light may show it
       evidence.seen = !people->seen_faces().empty();

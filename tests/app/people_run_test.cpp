@@ -309,8 +309,9 @@ TEST_F(RunWithPeople, FollowsAMarkerAndThenTheShirtThatItTaught) {
   EXPECT_EQ(somebody_else, 0);
 }
 
-// 6.4.1.1: the detector finds no dark face in a dim room. Somebody known by a marker stands there: with the fill light the face is seen, without it it is not.
-TEST_F(RunWithPeople, LightsADarkFaceInADimRoom) {
+// 6.4.1.1: the detector finds no dark face in the dark, a hundredth of good light. Somebody known by a marker stands there: with the fill light the face is seen,
+// without it it is not.
+TEST_F(RunWithPeople, LightsADarkFaceInTheDark) {
   enroll(7, kName);
   std::string world = read_text(CGSR_SOURCE_DIR "/config/worlds/people.toml");
   world.resize(world.find("[[person]]"));
@@ -318,8 +319,8 @@ TEST_F(RunWithPeople, LightsADarkFaceInADimRoom) {
     ASSERT_NE(world.find(from), std::string::npos) << from;
     world.replace(world.find(from), from.size(), to);
   };
-  replace("illuminance_lux = [55.0, 54.0, 52.0]", "illuminance_lux = [5.0, 5.0, 5.0]");
-  replace("lumens = 3200.0", "lumens = 300.0");
+  replace("illuminance_lux = [55.0, 54.0, 52.0]", "illuminance_lux = [0.5, 0.5, 0.5]");
+  replace("lumens = 3200.0", "lumens = 30.0");
   replace("lumens = 250.0", "lumens = 1000.0");  // as bright as a smaller one with a beam
   write_text(scratch_ / "dim.toml",
              world +

@@ -40,6 +40,13 @@ const std::vector<Case> kCases = {
     {"not where a face is seen", {{30.0, kFaceInTheDark, false, ""}}},
     {"not for who turns away after his face was seen in the dark",
      {{3.2, kFaceInTheDark, false, ""}, {20.5, kFacelessInTheDark, false, ""}, {1.0, kFacelessInTheDark, true, kDark}}},
+    {"for whoever comes after who was seen without it has left",
+     {{3.2, kFaceInTheDark, false, ""}, {2.8, kLost, false, ""}, {0.5, kLost, true, kDark}}},
+    {"not held for who is seen without it",
+     {{1.1, kLost, true, kDark},
+      {3.2, kFace, false, kSeen},
+      {3.1, kFaceInTheDark, false, ""},
+      {0.5, kLost, false, ""}}},
     {"where a face was met in the dark once, for who shows none",
      {{0.5, kFaceInTheDark, false, ""}, {1.2, kFacelessInTheDark, true, kDark}}},
     {"for who turns away after his face was seen in good light",
@@ -114,7 +121,8 @@ TEST(FillLight, NeverFlickers) {
     bool on = false, was_on = false;
     int changes = 0;
     for (int image = 0; image < 6000; ++image) {
-      FaceEvidence evidence{random() % 8 != 0, random() % 4 == 0, double(random() % 100) / 100.0};
+      const bool shows = trial % 4 == 1 && image / 400 % 2 == 0;  // a face, now and then, without the light too
+      FaceEvidence evidence{random() % 32 != 0, random() % 4 == 0 && (shows || on), double(random() % 100) / 100.0};
       if (trial % 2 == 0) evidence = {true, on, on ? 0.0 : 1.0};
       const FillLightDecision decision = light.decide(evidence, kImage);
       EXPECT_EQ(decision.changed, decision.on != on);
@@ -128,9 +136,7 @@ TEST(FillLight, NeverFlickers) {
       off_s = on ? 0.0 : off_s + to_seconds(kImage);
       ASSERT_LE(on_s, parameters.max_on_s + 0.2);
     }
-    if (trial % 2 == 0) {
-      EXPECT_GT(changes, 20) << "it goes on again after each rest";
-    }
+    { EXPECT_GT(changes, 8) << "it goes on again after each rest"; }
   }
 }
 

@@ -53,7 +53,7 @@ TEST(Context, OfARegionIsThatOfThePixelsWithinTheImage) {
   EXPECT_EQ(mean_luma(image, {-100, 0, 50, 48}), 1.0);
 }
 
-// A ramp and a step in noise of a known deviation, and noise alone.
+// A step in noise of a known deviation, and noise alone.
 TEST(Context, StandsOutOfTheNoiseByWhatIsNotNoise) {
   constexpr int kWidth = 160, kHeight = 120;
   const auto ratio = [](double contrast, double noise) {
@@ -74,6 +74,12 @@ TEST(Context, StandsOutOfTheNoiseByWhatIsNotNoise) {
   EXPECT_GT(ratio(30.0, 0.0), 20.0) << "grey values are rounded";
   EXPECT_EQ(ratio(0.0, 0.0), 0.0);
   EXPECT_EQ(signal_to_noise({}, {10, 10, 140, 100}), kNoNoise);
+  const std::vector<std::uint8_t> grey(std::size_t{2} * kWidth * kHeight, 128);
+  const ImageView yuyv{grey.data(), kWidth, kHeight, 2 * kWidth, PixelFormat::kYuyv};
+  EXPECT_EQ(signal_to_noise(yuyv, {10, 10, 15, 100}), kNoNoise) << "too narrow";
+  EXPECT_EQ(signal_to_noise(yuyv, {-100, 10, 110, 100}), kNoNoise) << "too narrow within the image";
+  EXPECT_EQ(signal_to_noise(yuyv, {-20, -20, 400, 400}), 0.0) << "plain";
+  EXPECT_EQ(signal_to_noise({grey.data(), kWidth, kHeight, kWidth, PixelFormat::kGrey8}, {10, 10, 140, 100}), kNoNoise);
 }
 
 // Bars two pixels wide, blurred along the rows by the mean of so many pixels: more and more is lost, and noise alone is not blurred.

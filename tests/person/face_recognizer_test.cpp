@@ -152,17 +152,20 @@ TEST(FaceTrainer, ForgetsWhatItLearnedWhereSomebodyElseTakesTheFacesPlace) {
 
 TEST(FaceTrainer, IsNotSureOfAStrangerWhoseFaceHardlyStandsOutOfTheNoise) {
   FaceTrainer trainer = trainer_with();
-  double before = 1.0;
+  double before = 1.0, others_before = 1.0;
   for (const double ratio : {kNoNoise, 3.5, 3.0, 2.5, 2.0}) {
     FaceQuestion stranger = question(1, 100), known = question(2, 1);
     stranger.signal_to_noise = known.signal_to_noise = ratio;
     const FaceMatch match = trainer.answer(stranger).match;
     EXPECT_FALSE(match.label);
     EXPECT_LE(match.confidence, before) << ratio;
+    EXPECT_LE(match.rules_out, others_before) << ratio;
     before = match.confidence;
+    others_before = match.rules_out;
     EXPECT_GT(trainer.answer(known).match.confidence, 0.75) << "a name is as sure as it is";
   }
   EXPECT_NEAR(before, 0.5, 1e-9);
+  EXPECT_NEAR(others_before, 0.5, 1e-9);
 }
 
 TEST(FaceTrainer, KeepsWhoIsAskedForThoughOthersComeAndGo) {

@@ -123,6 +123,28 @@ TEST(FaceGallery, NamesOneOfAThousand) {
   EXPECT_EQ(gallery.people(), 1001U);
 }
 
+// Of many people only those who are roughly most alike are compared well: the answer is that of comparing all, also for a face that lies a little off.
+TEST(FaceGallery, AnswersTheSameWhereOnlyTheMostAlikeAreCompared) {
+  constexpr int kPeople = 60;
+  const FaceGallery all = gallery_of(kPeople);
+  for (int person = 0; person < kPeople; person += 7) {
+    const auto face = described(portrait(static_cast<unsigned>(person), 0.8, {5, -4}));
+    const FaceMatch match = all.identify(face);
+    EXPECT_EQ(match.label, person);
+    double nearest_other = 1.0;
+    for (int one = 0; one < kPeople; ++one) {
+      FaceGallery alone;
+      for (const FaceView& view : *all.views_of(one)) alone.enroll(one, view);
+      const double distance = alone.identify(face).distance;
+      if (one == person)
+        EXPECT_EQ(distance, match.distance);
+      else
+        nearest_other = std::min(nearest_other, distance);
+    }
+    EXPECT_NEAR(match.margin, nearest_other - match.distance, 0.02) << "the nearest other may not be among them";
+  }
+}
+
 TEST(FaceDescriptor, OfAnEmptyCropOrOneOutsideIsNothing) {
   const cv::Mat grey = portrait(0);
   EXPECT_FALSE(describe_face(view_of_grey(grey), {}));

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
+#include "pipeline/person/context.h"
 #include "pipeline/person/face/face_tracks.h"
 #include "tests/person/drawn_face.h"
 #include "tests/support/counted_budget.h"
@@ -107,6 +108,32 @@ TEST(FaceTracks, AskForNoMoreComparisonsInASecondThanAreAllowed) {
   ASSERT_GE(asked.size(), 16U) << "of 20";
   EXPECT_LE(asked[3] - asked[0], 5) << "the first are not spread: a name is told at once";
   for (std::size_t i = 4; i < asked.size(); ++i) EXPECT_GE(asked[i] - asked[i - 4], kSecond);
+}
+
+// How far the face stands out of the noise goes with the question; how bright it is does not matter.
+TEST(FaceTracks, TellHowFarAFaceStandsOutOfTheNoise) {
+  const auto ratio_in = [](double noise) {
+    cv::Mat grey = people_at({320}), noisy(480, 640, CV_8UC1), yuyv(480, 640, CV_8UC2, cv::Scalar(0, 128));
+    cv::RNG random(5);
+    cv::Mat deviation(480, 640, CV_32F), sum;
+    random.fill(deviation, cv::RNG::NORMAL, 0.0, noise);
+    grey.convertTo(sum, CV_32F, 0.25, 60.0);
+    cv::Mat(sum + deviation).convertTo(noisy, CV_8U);
+    cv::insertChannel(noisy, yuyv, 0);
+    FaceTracks faces = tracks();
+    const ImageView image{yuyv.data, 640, 480, static_cast<std::ptrdiff_t>(yuyv.step), PixelFormat::kYuyv};
+    for (int i = 0; i < 60; ++i) {
+      CountedBudget budget(2);
+      faces.look(image, budget);
+    }
+    const auto question = faces.question(image);
+    return question ? question->signal_to_noise : -1.0;
+  };
+  const double clear = ratio_in(0.5), noisy = ratio_in(4.0);
+  EXPECT_GT(clear, 3.5);
+  EXPECT_LT(clear, kNoNoise);
+  EXPECT_GT(noisy, 0.0);
+  EXPECT_LT(noisy, 0.5 * clear);
 }
 
 }  // namespace

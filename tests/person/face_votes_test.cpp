@@ -48,6 +48,9 @@ TEST(FaceVotes, AtTheThresholdNobodyBecomesAStranger) {
   FaceVotes votes_at_it = votes(16, std::nullopt, 0.54);
   EXPECT_FALSE(votes_at_it.match());
   votes_at_it.add(answer(4, 0.54), 2);
+  for (int i = 0; i < 3; ++i) votes_at_it.add(answer(std::nullopt, 0.5), 2);
+  votes_at_it.add(answer(4, 0.54), 2);
+  EXPECT_FALSE(votes_at_it.match()) << "two of the last three have to agree";
   votes_at_it.add(answer(4, 0.54), 2);
   ASSERT_TRUE(votes_at_it.match());
   EXPECT_EQ(votes_at_it.match()->label, 4);

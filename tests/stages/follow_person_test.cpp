@@ -198,6 +198,13 @@ TEST_F(FollowPerson, AsksForTheFillLightWhereTheFaceIsInTheDark) {
   frame.people.value.face_count = 0;
   frame.people.value.expected_face = Box{290, -50, 60, 60};
   EXPECT_FALSE(asks(outside, dark, 60)) << "most of its place is above the image";
+  FollowPersonTask turned({.number = 4}, {}, {}, camera_, light);
+  frame.people.value.person.source = person::PersonSource::kFace;
+  frame.people.value.expected_face.reset();
+  EXPECT_FALSE(asks(turned, dark, 150));
+  frame.people.value.person.source = person::PersonSource::kShirt;
+  frame.people.value.expected_face = Box{290, 100, 60, 60};
+  EXPECT_FALSE(asks(turned, dark, 60)) << "the face was seen in that dark";
 }
 
 TEST_F(FollowPerson, DoesNotDriveByAnIdentificationThatIsNotOfThisImage) {

@@ -139,10 +139,10 @@ Case dark_face(Random& random) {
 }
 
 /// The volunteer of 6.4.1.1: too dark a face in too dark a hall, of whom nothing is known until a light shines on him.
-Case face_in_the_dark(Random& random, bool light) {
+Case face_in_the_dark(Random& random, const char* name, double darkest, bool light) {
   Case one = dark_face(random);
-  one.name = light ? "dark face in the dark, fill light" : "dark face in the dark, no fill light";
-  const double factor = random.uniform(0.06, 0.12);
+  one.name = name;
+  const double factor = random.uniform(darkest, 2.0 * darkest);
   one.lamp = fmt::format("[[lamp.script]]\nat_s = 0.0\nfactor = [{0:.2f}, {0:.2f}, {0:.2f}]\n", factor);
   one.ambient = fmt::format("[[ambient.script]]\nat_s = 0.0\nfactor = [{0:.2f}, {0:.2f}, {0:.2f}]\n", factor);
   one.face_light_lm = 3000.0;  // to all sides: on the face as bright as a torch of 40 lm with a beam of 25 degrees
@@ -151,15 +151,20 @@ Case face_in_the_dark(Random& random, bool light) {
 }
 
 Case lit_face(Random& random) {
-  return face_in_the_dark(random, true);
+  return face_in_the_dark(random, "dark face in the dark, fill light", 0.03, true);
 }
 
 Case unlit_face(Random& random) {
-  return face_in_the_dark(random, false);
+  return face_in_the_dark(random, "dark face in the dark, no fill light", 0.03, false);
+}
+
+// What was the dark before the detector's image was stretched.
+Case face_in_a_tenth(Random& random) {
+  return face_in_the_dark(random, "dark face in a tenth of the light, no fill light", 0.06, false);
 }
 
 constexpr std::array<Case (*)(Random&), kPeopleCases> kCases{
-    exchanged_shirts, white_shirt, changing_light, crossing_people, dark_face, lit_face, unlit_face};
+    exchanged_shirts, white_shirt, changing_light, crossing_people, dark_face, lit_face, unlit_face, face_in_a_tenth};
 
 }  // namespace
 

@@ -51,10 +51,10 @@ struct Case {
 };
 
 /// How many kinds of cases there are (6.2.4, 6.3).
-inline constexpr std::size_t kPeopleCases = 7;
+inline constexpr std::size_t kPeopleCases = 8;
 
 /// \return a variation of a case: exchanged shirts, a white shirt before a white wall, light that changes, two people who cross, a dark face in dim light,
-///     and in the dark with and without a light on the face.
+///     in a tenth of the light, and in the dark with and without a light on the face.
 Case draw_people_case(std::size_t kind, Random& random);
 
 /// \return a figure as the world's file has it.

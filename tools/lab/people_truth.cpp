@@ -14,10 +14,10 @@ namespace {
 
 constexpr int kWidth_px = 160, kHeight_px = 120;                  // enough for a quarter of a shirt
 constexpr double kFrontal_rad = 30.0 * std::numbers::pi / 180.0;  // to which the cascade finds faces
-constexpr int kLeast_px = 12;  // of a shirt or head inside the image: less is a sliver at its edge
+constexpr int kMinSilhouette_px = 12;  // of a shirt or head inside the image: less is a sliver at its edge
 
 double share(const sim::FigureView& view) {
-  return view.whole_px >= kLeast_px ? static_cast<double>(view.visible_px) / view.whole_px : 0.0;
+  return view.whole_px >= kMinSilhouette_px ? static_cast<double>(view.visible_px) / view.whole_px : 0.0;
 }
 
 bool faces(const sim::Pose& X_WH, const sim::Pose& X_WC) {

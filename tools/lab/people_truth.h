@@ -17,9 +17,9 @@ struct PersonView {
   bool frontal = false;
 
   /// "A quarter of shirt or face": the person is visible.
-  [[nodiscard]] bool visible() const { return shirt >= 0.25 || face >= 0.25; }
+  [[nodiscard]] bool is_visible() const { return shirt >= 0.25 || face >= 0.25; }
   /// "The shirt or a frontal face": something is visible by which the person can be told.
-  [[nodiscard]] bool told() const { return shirt >= 0.25 || (face >= 0.25 && frontal); }
+  [[nodiscard]] bool is_identifiable() const { return shirt >= 0.25 || (face >= 0.25 && frontal); }
 };
 
 /// Who is visible to a robot that stands, as the simulator knows it.

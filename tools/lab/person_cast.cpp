@@ -50,10 +50,12 @@ int draw_dark_person(Random& random) {
 Result<std::filesystem::path> Portraits::of(int identity) {
   const auto pictures = folder_ / fmt::format("portraits-{}", identity);
   if (std::filesystem::exists(pictures)) return pictures;
+  ++people_;
   return take(identity, 0);
 }
 
 Result<std::filesystem::path> Portraits::more_of(int identity) {
+  ++again_;
   return take(identity, kPortraits);
 }
 

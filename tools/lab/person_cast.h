@@ -31,10 +31,14 @@ class Portraits {
   Result<std::filesystem::path> of(int identity);
   /// As many again, for somebody whose face was found in none.
   Result<std::filesystem::path> more_of(int identity);
+  /// \return how many were photographed again, and how many at all.
+  [[nodiscard]] int again() const { return again_; }
+  [[nodiscard]] int people() const { return people_; }
 
  private:
   Result<std::filesystem::path> take(int identity, int first);
   const TableFolder& folder_;
+  int people_ = 0, again_ = 0;
 };
 
 /// Enrols generated people, the first as number 1 and so on.

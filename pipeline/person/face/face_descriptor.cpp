@@ -323,6 +323,19 @@ FaceView view_of(const FaceDescriptor& face) {
   return view;
 }
 
+std::int64_t rough_likeness(const FaceDescriptor& face, const FaceView& view) {
+  std::int64_t sum = 0;
+  for (std::size_t point = 0; point < std::size_t{kViewSide} * kViewSide; ++point) {
+    const std::size_t row = kReach + kSpacing * (point / kViewSide), column = kReach + kSpacing * (point % kViewSide);
+    const std::uint8_t* const seen = face.dense.data() + (row * kDenseSide + column) * kSiftSize;
+    const std::uint8_t* const known = view.data() + point * kSiftSize;
+    int product = 0;
+    for (int i = 0; i < kSiftSize; ++i) product += int{seen[i]} * int{known[i]};
+    sum += product;
+  }
+  return sum;
+}
+
 FaceAlignment view_distances(const FaceDescriptor& face, const FaceView& view,
                              std::array<double, kViewSide * kViewSide>& distances) {
   constexpr double kUnit = 255.0 * 255.0;

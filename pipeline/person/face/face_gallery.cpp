@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace cgsr::person {
 namespace {
@@ -67,14 +70,39 @@ const std::vector<FaceView>* FaceGallery::views_of(Label person) const {
   return found == people_.end() ? nullptr : &found->second;
 }
 
+// Comparing all of a thousand people would take seconds.
+std::vector<FaceGallery::People::const_iterator> FaceGallery::candidates(const FaceDescriptor& face,
+                                                                         std::optional<Label> without,
+                                                                         const LearnedViews& learned) const {
+  constexpr std::size_t kMost = 16;
+  std::vector<People::const_iterator> all;
+  for (auto person = people_.begin(); person != people_.end(); ++person) {
+    if (person->first == without || person->second.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
+    all.push_back(person);
+  }
+  if (all.size() <= kMost) return all;
+  std::vector<std::pair<std::int64_t, People::const_iterator>> ranked;
+  for (const auto& person : all) {
+    std::int64_t most = 0;
+    for (const FaceView& view : person->second) most = std::max(most, rough_likeness(face, view));
+    if (person->first == learned.person)
+      for (const FaceView& view : learned.views) most = std::max(most, rough_likeness(face, view));
+    ranked.emplace_back(most, person);
+  }
+  std::ranges::stable_sort(ranked, std::ranges::greater(), [](const auto& one) { return one.first; });
+  all.resize(kMost);
+  for (std::size_t i = 0; i < kMost; ++i) all[i] = ranked[i].second;
+  return all;
+}
+
 FaceMatch FaceGallery::identify(const FaceDescriptor& face, std::optional<Label> without,
                                 const LearnedViews& learned) const {
   FaceMatch match;
   if (face.dense.empty()) return match;
   double second = 1.0;
   std::size_t compared = 0;
-  for (const auto& [person, views] : people_) {
-    if (person == without || views.size() < static_cast<std::size_t>(parameters_.min_views)) continue;
+  for (const auto& candidate : candidates(face, without, learned)) {
+    const auto& [person, views] = *candidate;
     ++compared;
     const Away away = from(face, views, person == learned.person ? learned.views : std::span<const FaceView>());
     match.alignment.move_towards(away.alignment, 1.0 / static_cast<double>(compared));

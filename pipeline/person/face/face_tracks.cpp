@@ -131,7 +131,7 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
   const FaceTrack* wanted = nullptr;
   for (const FaceTrack& track : tracks_) {
     if (!track.seen || overdue(track) < 1.0) continue;
-    const auto urgency = [this](const FaceTrack& t) { return std::pair(!t.match, overdue(t)); };
+    const auto urgency = [this](const FaceTrack& t) { return std::pair(is_new(t), overdue(t)); };
     if (wanted == nullptr || urgency(track) > urgency(*wanted)) wanted = &track;
   }
   if (wanted == nullptr) return std::nullopt;
@@ -143,10 +143,17 @@ std::optional<FaceQuestion> FaceTracks::question(const ImageView& image) const {
   return question;
 }
 
+// Of some that hardly stand out of the noise it stays open whose they are: they take their turns with the others then.
+bool FaceTracks::is_new(const FaceTrack& track) {
+  constexpr int kComparisons = 3;
+  return !track.match && track.compared_ < kComparisons;
+}
+
 // How long a face has waited, by how long it should. Where there are more than may be compared, each gets its share.
 double FaceTracks::overdue(const FaceTrack& track) const {
-  if (!track.match) return 1.0 + track.images_waited_;
-  const bool sure = track.match->confidence >= parameters_.min_sure_confidence && !track.votes_.contradicted();
+  if (is_new(track)) return 1.0 + track.images_waited_;
+  const bool sure =
+      track.match && track.match->confidence >= parameters_.min_sure_confidence && !track.votes_.contradicted();
   const int after_images = sure ? parameters_.ask_again_images : parameters_.ask_again_unsure_images;
   return static_cast<double>(track.images_waited_) / after_images;
 }
@@ -161,6 +168,7 @@ void FaceTracks::asked(std::uint32_t face) {
 void FaceTracks::hear(const FaceAnswer& answer) {
   const auto track = std::ranges::find(tracks_, answer.face, &FaceTrack::number);
   if (track == tracks_.end()) return;
+  ++track->compared_;
   track->votes_.add(answer.match, parameters_.min_agreeing);
   track->match = track->votes_.match();
 }

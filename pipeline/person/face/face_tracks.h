@@ -62,6 +62,7 @@ struct FaceTrack {
   FaceVotes votes_;
   int looks_waited_ = 0;   // since it was looked for
   int images_waited_ = 0;  // since it was compared
+  int compared_ = 0;       // so often
 };
 
 /// The faces in view: each is looked for near its last place, what is left of the budget goes on with the search through the whole image (6.2.1), and
@@ -97,6 +98,7 @@ class FaceTracks {
   void forget_lost();
   void search(const ImageView& image);
   void add(const Box& face);
+  static bool is_new(const FaceTrack& track);
   [[nodiscard]] double overdue(const FaceTrack& track) const;
   [[nodiscard]] FaceTrack* longest_waiting();
 

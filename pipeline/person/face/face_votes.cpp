@@ -26,14 +26,13 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
     if (answer.nearest != match_->nearest) match_->rules_out = 0.0;
     return;
   }
-  if (!match_ && !answer.label && answer.confidence < kClear) return;
   std::shift_right(votes_.begin(), votes_.end(), 1);
   votes_.front() = answer;
   vote_count_ = std::min(vote_count_ + 1, kVotes);
   int agreeing = 0;
   double evidence = 0.0, rules_out = answer.rules_out;
   for (const FaceMatch& vote : std::span(votes_).first(vote_count_)) {
-    if (vote.label != answer.label) continue;
+    if (vote.label != answer.label || (!vote.label && vote.confidence < kClear)) continue;
     ++agreeing;
     evidence += evidence_of(vote.confidence);
     rules_out = vote.nearest == answer.nearest ? std::min(rules_out, vote.rules_out) : 0.0;

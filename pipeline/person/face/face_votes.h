@@ -16,8 +16,8 @@ namespace cgsr::person {
 /// of n. Those of one face are not independent of each other: n is at most 16, and a comparison that contradicts halves it.
 class FaceVotes {
  public:
-  /// An answer at the threshold says nothing against what is known: whose face is about as far as that would be somebody else's in turns. Where nothing is known
-  /// yet it makes nobody a stranger.
+  /// An answer at the threshold says nothing against what is known: whose face is about as far as that would be somebody else's in turns. Nor does it agree with
+  /// others that it is a stranger.
   /// \param min_agreeing  of the last three answers, else an older agreement stands.
   void add(const FaceMatch& answer, int min_agreeing);
 

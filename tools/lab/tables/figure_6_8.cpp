@@ -199,7 +199,7 @@ Result<std::vector<bool>> visible_in(const TableFolder& folder, const std::vecto
   if (!truth) return tl::unexpected(truth.error());
   std::vector<bool> visible;
   for (const Seen& image : images)
-    visible.push_back(std::ranges::any_of(truth->at(image.time_s + kTraining_s), &PersonView::visible));
+    visible.push_back(std::ranges::any_of(truth->at(image.time_s + kTraining_s), &PersonView::is_visible));
   return visible;
 }
 
@@ -258,6 +258,8 @@ Result<Report> figure_6_8(const Setting& setting) {
   for (std::size_t variant = 0; variant < kVariants.size(); ++variant)
     add_rows(report, kVariants[variant].name, counts[variant], setting.seed);
   report.rows.push_back(share_row("enrolment", "taken for somebody who is enrolled", refused, setting.trials * 4));
+  report.rows.push_back(
+      share_row("enrolment", "photographed again, for no face was found", portraits.again(), portraits.people()));
   report.plots.push_back(std::move(plot));
   report.notes = {
       "A cast is a person, his clothes, his way and three others who are enrolled with him, drawn by the seed; "
