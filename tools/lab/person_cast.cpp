@@ -95,6 +95,11 @@ Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits,
       if (const auto more = portraits.more_of(identity); !more) return tl::unexpected(more.error());
       enrolled = run_cgsr(words);
     }
+    if (enrolled && enrolled->find("has a single view") != std::string::npos) {
+      if (const auto more = portraits.more_of(identity); !more) return tl::unexpected(more.error());
+      words.emplace_back("--more");
+      enrolled = run_cgsr(words);
+    }
     if (enrolled) continue;
     ++refused;
     words.emplace_back("--alike");

@@ -199,6 +199,10 @@ std::vector<Box> FaceDetector::find_all(const ImageView& image) {
   for (const SearchStep& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
     std::vector<Box> noticed;
     look_at(image, slice, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
+    SearchStep between = slice;  // the sizes between its own
+    between.min_face_px *= std::sqrt(kScaleStep);
+    between.max_face_px *= std::sqrt(kScaleStep);
+    look_at(image, between, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
     for (const Box& rough : noticed) {
       if (is_among(faces, rough)) continue;
       const auto face = find_near(image, rough);

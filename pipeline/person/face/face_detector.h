@@ -64,7 +64,7 @@ class FaceDetector {
   ///     gives it.
   void search(const ImageView& image, std::vector<Box>& faces);
 
-  /// All faces of one image, every position looked at: for enrolment and single images, not for the frame path.
+  /// All faces of one image, every position looked at, in steps of a tenth of the size: for enrolment and single images, not for the frame path.
   std::vector<Box> find_all(const ImageView& image);
 
   /// \return the slices of which a round through a whole image of this size consists.
