@@ -81,6 +81,11 @@ Result<std::filesystem::path> Portraits::take(int identity, int first) {
   return pictures;
 }
 
+Row photographed_again(const Portraits& portraits) {
+  return share_row("enrolment", "photographed again, for fewer than two faces were found in four pictures",
+                   portraits.again(), portraits.people());
+}
+
 Result<int> enroll_all(const std::vector<int>& identities, Portraits& portraits, const std::filesystem::path& file) {
   int refused = 0;
   for (const int identity : identities) {

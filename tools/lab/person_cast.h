@@ -9,6 +9,7 @@
 
 #include "platform/error.h"
 #include "tools/lab/child.h"
+#include "tools/lab/report.h"
 #include "tools/lab/scenes/random.h"
 
 namespace cgsr::lab {
@@ -29,7 +30,7 @@ class Portraits {
 
   /// \param identity  0 .. sim::kLastIdentity. \return the folder of the pictures.
   Result<std::filesystem::path> of(int identity);
-  /// As many again, for somebody whose face was found in none.
+  /// As many again, for somebody whose face was found in fewer than two: who has a single view counts as a stranger.
   Result<std::filesystem::path> more_of(int identity);
   /// \return how many were photographed again, and how many at all.
   [[nodiscard]] int again() const { return again_; }
@@ -40,6 +41,9 @@ class Portraits {
   const TableFolder& folder_;
   int people_ = 0, again_ = 0;
 };
+
+/// \return the row that says how many needed more pictures than the first four.
+Row photographed_again(const Portraits& portraits);
 
 /// Enrols generated people, the first as number 1 and so on.
 /// \return how many were taken for somebody who was enrolled already, and enrolled as somebody who looks alike (--alike).

@@ -258,8 +258,7 @@ Result<Report> figure_6_8(const Setting& setting) {
   for (std::size_t variant = 0; variant < kVariants.size(); ++variant)
     add_rows(report, kVariants[variant].name, counts[variant], setting.seed);
   report.rows.push_back(share_row("enrolment", "taken for somebody who is enrolled", refused, setting.trials * 4));
-  report.rows.push_back(
-      share_row("enrolment", "photographed again, for no face was found", portraits.again(), portraits.people()));
+  report.rows.push_back(photographed_again(portraits));
   report.plots.push_back(std::move(plot));
   report.notes = {
       "A cast is a person, his clothes, his way and three others who are enrolled with him, drawn by the seed; "

@@ -272,8 +272,7 @@ Result<Report> finals(const Setting& setting) {
   add_rows(stories, runs, setting.seed, report);
   report.rows.push_back(
       plain_row("enrolment", "pairs drawn again because the second is refused as the first", "", redrawn, runs.size()));
-  report.rows.push_back(
-      share_row("enrolment", "photographed again, for no face was found", portraits.again(), portraits.people()));
+  report.rows.push_back(photographed_again(portraits));
   report.notes = {
       "Who is who, shirts, heights, ways, places and the lamp's colour are drawn by the seed; the robot drives. Twice "
       "a "

@@ -213,8 +213,7 @@ Result<Report> people_cases(const Setting& setting) {
   for (std::size_t i = 0; i < kPeopleCases; ++i) add_rows(names[i], counts[i], setting.seed, report);
   report.rows.push_back(plain_row("enrolment", "pairs drawn again because the second is refused as the first", "",
                                   redrawn, counts[0].size()));
-  report.rows.push_back(
-      share_row("enrolment", "photographed again, for no face was found", portraits.again(), portraits.people()));
+  report.rows.push_back(photographed_again(portraits));
   report.notes = {
       "Identities, shirts, heights, places and light are drawn by the seed; intervals are over variations. The robot "
       "has seen the person from the front for 3 s before.",

@@ -191,8 +191,7 @@ Result<Report> who_is_who(const Setting& setting) {
   add_rows(lines, setting.seed, report);
   report.rows.push_back(
       share_row("enrolment", "taken for somebody who is enrolled", refused, setting.trials * static_cast<int>(kKnown)));
-  report.rows.push_back(
-      share_row("enrolment", "photographed again, for no face was found", portraits.again(), portraits.people()));
+  report.rows.push_back(photographed_again(portraits));
   report.notes = {
       "A line is drawn by the seed: who stands in it and where, who is not enrolled, heights, how heads turn. People "
       "stand .7 m apart, 1.6 m before the robot, and look at it.",
