@@ -30,8 +30,8 @@ constexpr std::size_t kMaxFaces = 200;  // of one enrolment: bounds memory
 // begin where those of one in two lights end, so that who looks alike may be refused (--alike), and whose light has changed may not be recognised as the same.
 constexpr double kMuchFarther = 1.25;      // somebody else's
 constexpr double kFartherThanNamed = 1.7;  // somebody else's than whose they are said to be
-constexpr double kAlike = 0.06;            // nearer than this are only images of one sitting,
-constexpr double kUnlike = 0.07;           // and farther only images of which some are bad
+constexpr double kAlike = 0.055;           // nearer than this are only images of one sitting,
+constexpr double kUnlike = 0.064;          // and farther only images of which some are bad
 
 double distance(const FaceDescriptor& face, const FaceView& view) {
   std::array<double, person::kViewSide * person::kViewSide> points{};

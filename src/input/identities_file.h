@@ -13,7 +13,7 @@
 namespace cgsr::app {
 
 /// Version that save_identities writes, and the only one that load_identities reads: views of another cannot be compared with a face as it is described now.
-inline constexpr int kIdentitiesVersion = 2;
+inline constexpr int kIdentitiesVersion = 3;
 
 /// Writes the identities: CBOR {format, version, sha256, payload}, the payload again CBOR; readable by the owner alone (mode 0600). The file appears
 /// whole or not at all: it is written beside its place, synchronised and renamed; of a symbolic link what it points to is written. A name that name_problem() speaks

@@ -184,6 +184,14 @@ TEST_F(SimToolFault, WhatACommandLineGetsWrongIsNamed) {
   EXPECT_EQ(render({"--frobnicate"}).exit_code, 2);
 }
 
+TEST_F(SimToolFault, ALampOnARobotThatIsNotInThePictureIsNotSwitchedOn) {
+  const Outcome outcome =
+      run_cgsr({"render", "--world", "people", "--from", "0.8,0,1.45", "--to", "2.6,0,1.4", "--on", "face light",
+                "--output", scratch_ / "refused.png"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("the lamp of line 'face light' is carried by 'robot', which is not in a picture"));
+}
+
 TEST_F(SimToolFault, SizesThatCannotBeAreRefused) {
   for (const char* size : {"0x0", "160", "161x120", "160x", "1e3x100", "99999x99999", "-160x120", "160x120x3"}) {
     const Outcome outcome = run_cgsr({"render", "--world", scratch_ / "room.toml", "--output", scratch_ / "refused.png",

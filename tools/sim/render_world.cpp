@@ -34,6 +34,15 @@ Result<SwitchStates> lines(const Scene& scene, const PictureRequest& request) {
       line->second = on;
     }
   }
+  // Robots are not in a picture from a free place, and neither is what they carry.
+  const bool free = request.X_WC || !request.view.empty();
+  for (const Lamp& lamp : scene.lamps) {
+    if (!free || lamp.carried_by < 0 || std::ranges::find(request.on, lamp.switch_name) == request.on.end()) continue;
+    return fail(
+        fmt::format("the lamp of line '{}' is carried by '{}', which is not in a picture from a free place: without "
+                    "one the picture is a robot's view",
+                    lamp.switch_name, scene.figures[static_cast<std::size_t>(lamp.carried_by)].name));
+  }
   return states;
 }
 

@@ -12,13 +12,13 @@
 namespace cgsr::person {
 
 struct FaceMatchParameters {
-  double min_margin = 0.025;
-  double typical_stranger = 0.155;
-  double nearest_stranger = 0.145;
+  double min_margin = 0.019;
+  double typical_stranger = 0.138;
+  double nearest_stranger = 0.133;
   int min_views = 2;
   int max_views = 6;
   int max_learned_views = 2;
-  double max_step = 0.09;
+  double max_step = 0.082;
 
   template <class Self, class Visitor>
   static void describe(Self& self, Visitor& visit) {
