@@ -29,10 +29,12 @@ Result<void> load_people(RobotState& state) {
     return fail(fmt::format("task.person.number = {}: nobody in {} has that number", asked, config.identities));
   }
   state.report.notes.push_back(fmt::format("people: {} enrolled", identities->people.size()));
-  state.vision.people = person::gallery_of(*identities, config.identifier.match);
   auto detector = app::read_face_detector(config.cascade, config.identifier.detector);
   if (!detector) return tl::unexpected(detector.error());
+  auto eyes = app::read_eye_detector(config.eye_cascade);
+  if (!eyes) return tl::unexpected(eyes.error());
   state.vision.face_detector = std::move(*detector);
+  state.vision.people.emplace(person::gallery_of(*identities, config.identifier.match), std::move(*eyes));
   return {};
 }
 
@@ -52,7 +54,7 @@ Result<void> make_people(RobotState& state) {
   } else if (state.setup.live()) {
     recognizer = std::make_unique<tasks::LinkedRecognizer>(state.links);
   } else {
-    recognizer = std::make_unique<person::SteppedRecognizer>(*state.vision.people, parameters.answer_after_images);
+    recognizer = std::make_unique<person::SteppedRecognizer>(std::move(*state.vision.people), parameters.answer_after_images);
   }
   state.vision.parts.make<stages::IdentifyStage>(std::move(state.vision.face_detector), std::move(recognizer),
                                                  parameters);

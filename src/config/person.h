@@ -11,6 +11,7 @@ namespace cgsr::config {
 struct Person {
   std::string identities;
   std::string cascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
+  std::string eye_cascade = "/usr/share/opencv4/haarcascades/haarcascade_eye.xml";
   person::IdentifierParameters identifier;
   behavior::FillLightParameters fill_light;
 
@@ -24,6 +25,9 @@ struct Person {
                "nobody, unless "
                "by a marker.");
     visit.path("cascade", self.cascade, "The cascade that finds frontal faces, of Debian's package opencv-data.");
+    visit.path("eye_cascade", self.eye_cascade,
+               "The cascade that finds eyes, of the same package: what has none is no stranger's face. Empty: everything "
+               "that looks like a face is one.");
     person::IdentifierParameters::describe(self.identifier, visit);
     visit.section("fill_light", self.fill_light, "A light on faces in the dark (6.4.1.1)");
   }

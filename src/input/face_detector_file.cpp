@@ -22,4 +22,15 @@ Result<person::FaceDetector> read_face_detector(const std::filesystem::path& cas
   return detector;
 }
 
+Result<std::optional<person::EyeDetector>> read_eye_detector(const std::filesystem::path& cascade) {
+  if (cascade.empty()) return std::nullopt;
+  const auto text = read_small_file(cascade, kMaxCascadeBytes, "an eye cascade");
+  if (!text)
+    return fail(text.error().message +
+                "; Debian's opencv-data has one: person.eye_cascade names another place, or none (\"\")");
+  auto detector = person::EyeDetector::from_cascade(*text);
+  if (!detector) return fail(fmt::format("{}: {}", cascade.string(), detector.error().message));
+  return std::optional(std::move(*detector));
+}
+
 }  // namespace cgsr::app

@@ -8,7 +8,7 @@ namespace cgsr::tasks {
 /// Names faces, and learns new views of them, on a thread of its own, below everything that has a deadline.
 class RecognitionTask {
  public:
-  RecognitionTask(person::FaceGallery gallery, Links& links) : trainer_(std::move(gallery)), links_(links) {}
+  RecognitionTask(person::FaceTrainer trainer, Links& links) : trainer_(std::move(trainer)), links_(links) {}
 
   /// Answers every question that is there.
   void step();

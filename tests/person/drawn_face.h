@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -30,13 +31,17 @@ inline void draw_face(cv::Mat& grey, int x, int y, double size) {
   oval(0.0, 0.35, 0.14, 0.04, 100);
 }
 
-/// With the cascade that Debian ships.
-inline FaceDetector detector_of_debian() {
-  std::ifstream in("/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml");
+/// \return the text of a cascade that Debian ships.
+inline std::string text_of_cascade(const std::string& file) {
+  std::ifstream in("/usr/share/opencv4/haarcascades/" + file);
   std::stringstream text;
   text << in.rdbuf();
-  EXPECT_TRUE(in) << "opencv-data's cascade is not there";
-  return FaceDetector::from_cascade(text.str(), {}).value();
+  EXPECT_TRUE(in) << "opencv-data's " << file << " is not there";
+  return text.str();
+}
+
+inline FaceDetector detector_of_debian() {
+  return FaceDetector::from_cascade(text_of_cascade("haarcascade_frontalface_alt2.xml"), {}).value();
 }
 
 }  // namespace cgsr::person

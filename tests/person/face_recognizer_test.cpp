@@ -44,7 +44,7 @@ FaceQuestion question(std::uint32_t face, unsigned seed) {
 }
 
 TEST(SteppedRecognizer, AnswersSoManyImagesAfterTheQuestionAndTakesOneAtATime) {
-  SteppedRecognizer recognizer(gallery_of_two(), 3);
+  SteppedRecognizer recognizer(FaceTrainer(gallery_of_two()), 3);
   EXPECT_FALSE(recognizer.answer());
   EXPECT_TRUE(recognizer.ask(question(7, 2)));
   EXPECT_FALSE(recognizer.ask(question(8, 1)));
@@ -59,7 +59,7 @@ TEST(SteppedRecognizer, AnswersSoManyImagesAfterTheQuestionAndTakesOneAtATime) {
 }
 
 TEST(SteppedRecognizer, SaysAStrangersWhereTheCropIsNone) {
-  SteppedRecognizer recognizer(gallery_of_two(), 1);
+  SteppedRecognizer recognizer(FaceTrainer(gallery_of_two()), 1);
   EXPECT_TRUE(recognizer.ask({1, {}}));
   const auto answer = recognizer.answer();
   ASSERT_TRUE(answer);

@@ -16,7 +16,8 @@ namespace {
 
 constexpr int kFace_px = 128;   // to which a face is scaled
 constexpr int kMargin_px = 26;  // around it
-constexpr int kCrop_px = kFace_px + 2 * kMargin_px;
+constexpr int kCrop_px = kFaceCrop_px;
+static_assert(kCrop_px == kFace_px + 2 * kMargin_px);
 constexpr int kStep_px = 4;    // of the dense grid
 constexpr int kFirst_px = 28;  // its first point
 constexpr int kCell_px = 5;    // of a descriptor

@@ -18,6 +18,9 @@ inline constexpr int kViewSide = 9;
 /// Points of the dense grid with which a seen face is compared: 31 x 31, so that every point of a view may lie 3 steps off.
 inline constexpr int kDenseSide = 31;
 
+/// Width and height of what face_crop() cuts: a face of 128 px and a margin of 26 around it.
+inline constexpr int kFaceCrop_px = 180;
+
 /// A face that was enrolled: descriptors on the coarse grid, row by row. 10 kB; the face cannot be drawn from it, but it identifies a person.
 using FaceView = std::array<std::uint8_t, kViewSide * kViewSide * kSiftSize>;
 
@@ -45,7 +48,7 @@ struct FaceAlignment {
 /// Cost: 11 million instructions, allocates: for the trainer's thread, not for the frame path.
 std::optional<FaceDescriptor> describe_face(const ImageView& image, const Box& face);
 
-/// The pixels that describe_face() reads: the face and a margin around it, grey, 180 x 180. To be described later, on another thread.
+/// The pixels that describe_face() reads: the face and a margin around it, grey, kFaceCrop_px x kFaceCrop_px. To be described later, on another thread.
 /// \return empty: the crop is empty or lies outside of the image.
 GreyPatch face_crop(const ImageView& image, const Box& face);
 

@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-#include <opencv2/objdetect.hpp>
+#include <opencv2/imgproc.hpp>
 
+#include "pipeline/person/face/cascade.h"
 #include "pipeline/person/face/grey_region.h"
 
 namespace cgsr::person {
-
-struct FaceDetector::Cascade {
-  cv::CascadeClassifier classifier;
-};
-
 namespace {
 
 // find_near() and find_all() scale faces to twice the size of the cascade's own window: from there on OpenCV tries every position, below only every
@@ -42,6 +37,17 @@ GreyPatch patch_for_cascade(const ImageView& image, const Box& region, int width
   GreyPatch patch = quick_grey_region(image, region, width_px, height_px);
   if (!patch.pixels.empty()) stretch_contrast(patch, kMaxStretch);
   return patch;
+}
+
+// Contrast limited adaptive histogram equalisation (Zuiderveld, 1994), OpenCV's. Stretching does not help a dark face before a bright wall.
+GreyPatch equal_contrast(const ImageView& image) {
+  constexpr double kClipLimit = 4.0;  // of 2 to 8 and 4 to 12 tiles: the most drawn faces, and no more of what is none
+  constexpr int kTiles = 8;
+  const Box whole{0, 0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
+  GreyPatch grey = grey_region(image, whole, image.width_px, image.height_px);
+  cv::Mat pixels(grey.height_px, grey.width_px, CV_8UC1, grey.pixels.data());
+  cv::createCLAHE(kClipLimit, {kTiles, kTiles})->apply(pixels, pixels);
+  return grey;
 }
 
 int tiles_along(double length_px, double tile_px, double overlap_px) {
@@ -88,16 +94,6 @@ std::vector<SearchStep> slices_of(int width_px, int height_px, double min_face_p
   return slices;
 }
 
-std::vector<cv::Rect> detect(cv::CascadeClassifier& cascade, const GreyPatch& patch, double step, int neighbors,
-                             double min_px, double max_px) {
-  std::vector<cv::Rect> found;
-  const cv::Mat pixels(patch.height_px, patch.width_px, CV_8UC1, const_cast<std::uint8_t*>(patch.pixels.data()));
-  const int least = static_cast<int>(min_px);
-  const int most = static_cast<int>(std::ceil(max_px));
-  cascade.detectMultiScale(pixels, found, step, neighbors, 0, {least, least}, {most, most});
-  return found;
-}
-
 double distance(const Box& a, const Box& b) {
   return std::hypot(a.x + a.width / 2 - b.x - b.width / 2, a.y + a.height / 2 - b.y - b.height / 2);
 }
@@ -116,14 +112,16 @@ SearchStep shifted(SearchStep slice, std::size_t round) {
 
 // Appends the rough places of faces in a slice, scaled so that the smallest are of face_px.
 void look_at(const ImageView& image, const SearchStep& slice, double face_px, int neighbors,
-             cv::CascadeClassifier& cascade, std::vector<Box>& rough) {
+             Cascade& cascade, std::vector<Box>& rough) {
   const double scale = face_px / slice.min_face_px;
   const Box& region = slice.region;
   const int width = static_cast<int>(std::lround(region.width * scale));
   const int height = static_cast<int>(std::lround(region.height * scale));
   const GreyPatch patch = patch_for_cascade(image, region, width, height);
   if (patch.pixels.empty()) return;
-  for (const cv::Rect& r : detect(cascade, patch, kScaleStep, neighbors, face_px, slice.max_face_px * scale + 1)) {
+  const CascadeSearch sizes{kScaleStep, neighbors, static_cast<int>(face_px),
+                            static_cast<int>(std::ceil(slice.max_face_px * scale + 1))};
+  for (const cv::Rect& r : cascade.find(patch, sizes)) {
     const Box face{region.x + r.x / scale, region.y + r.y / scale, r.width / scale, r.height / scale};
     if (!is_among(rough, face)) rough.push_back(face);
   }
@@ -143,16 +141,9 @@ FaceDetector::~FaceDetector() = default;
 
 Result<FaceDetector> FaceDetector::from_cascade(const std::string& cascade_xml,
                                                 const FaceDetectorParameters& parameters) {
-  auto cascade = std::make_unique<Cascade>();
-  try {
-    const cv::FileStorage file(cascade_xml, cv::FileStorage::READ | cv::FileStorage::MEMORY);
-    if (!file.isOpened() || !cascade->classifier.read(file.getFirstTopLevelNode()) || cascade->classifier.empty()) {
-      return fail("not a cascade of OpenCV's: haarcascade_frontalface_alt2.xml of Debian's opencv-data is one");
-    }
-  } catch (const cv::Exception& error) {
-    return fail(fmt::format("not a cascade of OpenCV's: {}", error.err));
-  }
-  return FaceDetector(std::move(cascade), parameters);
+  auto cascade = Cascade::from_xml(cascade_xml, "haarcascade_frontalface_alt2.xml");
+  if (!cascade) return tl::unexpected(cascade.error());
+  return FaceDetector(std::make_unique<Cascade>(std::move(*cascade)), parameters);
 }
 
 std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& expected) {
@@ -164,8 +155,9 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
   const GreyPatch patch = patch_for_cascade(image, region, size, size);
   if (patch.pixels.empty()) return std::nullopt;
   std::optional<Box> nearest;
-  for (const cv::Rect& r : detect(cascade_->classifier, patch, kNearStep, parameters_.min_neighbors, kClose_px,
-                                  kExpectedFace_px * kNearMost)) {
+  const CascadeSearch sizes{kNearStep, parameters_.min_neighbors, static_cast<int>(kClose_px),
+                            static_cast<int>(std::ceil(kExpectedFace_px * kNearMost))};
+  for (const cv::Rect& r : cascade_->find(patch, sizes)) {
     const double back = side / size;
     const Box face{std::round(region.x) + r.x * back, std::round(region.y) + r.y * back, r.width * back,
                    r.height * back};
@@ -182,7 +174,7 @@ void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
     if (slices.empty()) return;
     const auto slice = shifted(slices[next_slice_ % slices.size()], next_slice_ / slices.size());
     ++next_slice_;
-    look_at(image, slice, kRoughCut.face_px, 0, cascade_->classifier, noticed_);
+    look_at(image, slice, kRoughCut.face_px, 0, *cascade_, noticed_);
     std::erase_if(noticed_, [&](const Box& rough) { return is_among(faces, rough); });
     return;
   }
@@ -193,16 +185,23 @@ void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
 }
 
 std::vector<Box> FaceDetector::find_all(const ImageView& image) {
+  if (image.empty()) return {};
+  auto faces = find_all_as_it_is(image);
+  if (!faces.empty()) return faces;
+  GreyPatch equal = equal_contrast(image);
+  return find_all_as_it_is({equal.pixels.data(), equal.width_px, equal.height_px, equal.width_px, PixelFormat::kGrey8});
+}
+
+std::vector<Box> FaceDetector::find_all_as_it_is(const ImageView& image) {
   std::vector<Box> faces;
-  if (image.empty()) return faces;
   const int neighbors = std::min(1, parameters_.min_neighbors);
   for (const SearchStep& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
     std::vector<Box> noticed;
-    look_at(image, slice, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
+    look_at(image, slice, kCloseCut.face_px, neighbors, *cascade_, noticed);
     SearchStep between = slice;  // the sizes between its own
     between.min_face_px *= std::sqrt(kScaleStep);
     between.max_face_px *= std::sqrt(kScaleStep);
-    look_at(image, between, kCloseCut.face_px, neighbors, cascade_->classifier, noticed);
+    look_at(image, between, kCloseCut.face_px, neighbors, *cascade_, noticed);
     for (const Box& rough : noticed) {
       if (is_among(faces, rough)) continue;
       const auto face = find_near(image, rough);

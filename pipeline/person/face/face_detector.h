@@ -12,6 +12,8 @@
 
 namespace cgsr::person {
 
+class Cascade;
+
 struct FaceDetectorParameters {
   double min_face_px = 40.0;
   double region = 1.6;
@@ -64,14 +66,15 @@ class FaceDetector {
   ///     gives it.
   void search(const ImageView& image, std::vector<Box>& faces);
 
-  /// All faces of one image, every position looked at, in steps of a tenth of the size: for enrolment and single images, not for the frame path.
+  /// All faces of one image, every position looked at, in steps of a tenth of the size; where there is none, once more with the contrast made equal
+  /// place by place, for a dark face in a bright room. For enrolment and single images, not for the frame path.
   std::vector<Box> find_all(const ImageView& image);
 
   /// \return the slices of which a round through a whole image of this size consists.
   [[nodiscard]] std::vector<SearchStep> round_of(int width_px, int height_px) const;
 
  private:
-  struct Cascade;
+  std::vector<Box> find_all_as_it_is(const ImageView& image);
   FaceDetector(std::unique_ptr<Cascade> cascade, const FaceDetectorParameters& parameters);
 
   std::unique_ptr<Cascade> cascade_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pipeline/person/context.h"
+#include "pipeline/person/face/eye_detector.h"
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/face/grey_region.h"
 
@@ -43,10 +44,13 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
 /// Bounded: kFaces faces are remembered, FaceMatchParameters::max_learned_views views of each. Threads: one, the recogniser's.
 class FaceTrainer {
  public:
-  explicit FaceTrainer(FaceGallery gallery) : gallery_(std::move(gallery)) {}
+  /// \param eyes  what has no eye is nobody's face; nothing: that is not asked.
+  explicit FaceTrainer(FaceGallery gallery, std::optional<EyeDetector> eyes = std::nullopt)
+      : gallery_(std::move(gallery)), eyes_(std::move(eyes)) {}
 
   /// Noise makes a face farther from everybody, its own views too: of one that hardly stands out of it, 'a stranger's' and 'nobody else's' are less sure.
-  /// Cost: as identify_crop(), and half a million instructions where the name is not sure.
+  /// 'A stranger's' of what has no eye says nothing: 0.5.
+  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where there is none.
   FaceAnswer answer(const FaceQuestion& question);
 
   /// \return how many views were learned of a face.
@@ -65,6 +69,7 @@ class FaceTrainer {
   void learn(Followed& face) const;
 
   FaceGallery gallery_;
+  std::optional<EyeDetector> eyes_;
   std::array<Followed, kFaces> followed_{};
 };
 
@@ -87,7 +92,7 @@ class FaceRecognizer {
 class SteppedRecognizer final : public FaceRecognizer {
  public:
   /// \param images  at least 1.
-  SteppedRecognizer(FaceGallery gallery, int images) : trainer_(std::move(gallery)), images_(images) {}
+  SteppedRecognizer(FaceTrainer trainer, int images) : trainer_(std::move(trainer)), images_(images) {}
 
   bool ask(FaceQuestion&& question) override;
   std::optional<FaceAnswer> answer() override;

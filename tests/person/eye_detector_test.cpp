@@ -1,0 +1,77 @@
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "pipeline/person/face/eye_detector.h"
+#include "pipeline/person/face/face_descriptor.h"
+#include "pipeline/person/face/face_recognizer.h"
+#include "tests/person/drawn_face.h"
+
+namespace cgsr::person {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr double kSize = 100.0;
+
+EyeDetector eyes_of_debian() {
+  return EyeDetector::from_cascade(text_of_cascade("haarcascade_eye.xml")).value();
+}
+
+cv::Mat with_a_face() {
+  cv::Mat grey(kHeight, kWidth, CV_8U, cv::Scalar(150));
+  draw_face(grey, 160, 120, kSize);
+  return grey;
+}
+
+/// The same with skin where the eyes are: what a detector of faces takes for one now and then.
+cv::Mat without_eyes() {
+  cv::Mat grey = with_a_face();
+  cv::rectangle(grey, {131, 95}, {189, 121}, 190, cv::FILLED);
+  return grey;
+}
+
+GreyPatch crop_of(const cv::Mat& grey, double size = 1.0) {
+  const double side = 0.8 * kSize * size;
+  return face_crop({grey.data, grey.cols, grey.rows, static_cast<std::ptrdiff_t>(grey.step), PixelFormat::kGrey8},
+                   {160 - side / 2, 122 - side / 2, side, side});
+}
+
+// A face is compared again and again, each time in another box; the drawn eyes are hardly like eyes.
+TEST(EyeDetector, SeesAnEyeInOneOfAFewBoxesAtAnyContrast) {
+  EyeDetector eyes = eyes_of_debian();
+  for (const double contrast : {1.0, 0.5, 0.25}) {
+    cv::Mat grey;
+    with_a_face().convertTo(grey, CV_8U, contrast, 16.0);
+    int seen = 0;
+    for (const double size : {0.8, 1.0, 1.25}) seen += eyes.sees_eye(crop_of(grey, size)) ? 1 : 0;
+    EXPECT_GT(seen, 0) << contrast;
+  }
+}
+
+TEST(EyeDetector, SeesNoneWhereThereIsNone) {
+  EyeDetector eyes = eyes_of_debian();
+  for (const double size : {0.8, 1.0, 1.25}) EXPECT_FALSE(eyes.sees_eye(crop_of(without_eyes(), size))) << size;
+  EXPECT_FALSE(eyes.sees_eye({}));
+  EXPECT_FALSE(eyes.sees_eye({10, 10, std::vector<std::uint8_t>(100)}));
+}
+
+TEST(EyeDetector, SaysWhatIsWrongWithACascade) {
+  const auto eyes = EyeDetector::from_cascade("nothing");
+  ASSERT_FALSE(eyes);
+  EXPECT_NE(eyes.error().message.find("not a cascade of OpenCV's"), std::string::npos) << eyes.error().message;
+}
+
+TEST(FaceTrainer, SaysNothingOfAStrangerWithoutEyes) {
+  FaceGallery gallery({.min_views = 1});
+  cv::Mat other(kHeight, kWidth, CV_8U);
+  cv::RNG(1).fill(other, cv::RNG::UNIFORM, 60, 200);
+  gallery.enroll(1, view_of(*describe_crop(crop_of(other))));
+  FaceTrainer asks(gallery, eyes_of_debian()), asks_not(gallery);
+  const FaceQuestion face{1, crop_of(with_a_face())}, none{2, crop_of(without_eyes())};
+  EXPECT_FALSE(asks.answer(face).match.label);
+  EXPECT_GT(asks.answer(face).match.confidence, 0.75);
+  EXPECT_EQ(asks.answer(none).match.confidence, 0.5);
+  EXPECT_GT(asks_not.answer(none).match.confidence, 0.75);
+}
+
+}  // namespace
+}  // namespace cgsr::person
