@@ -91,7 +91,7 @@ cgsr_package(cgsr-lab "measurements of cgsr"
 "The program behind `cgsr reproduce`: the tables and figures of the dissertation
 measured anew, beside trackers of others.")
 set(CPACK_DEBIAN_CGSR_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers | systemd-sysusers")
-set(CPACK_DEBIAN_CGSR_PACKAGE_RECOMMENDS "systemd, udev")
+set(CPACK_DEBIAN_CGSR_PACKAGE_RECOMMENDS "systemd, udev, opencv-data")
 set(CPACK_DEBIAN_CGSR_PACKAGE_SUGGESTS "cgsr-opengl, cgsr-simulator, cgsr-map")
 foreach(component OPENGL SIMULATOR MAP LAB)
   set(CPACK_DEBIAN_CGSR-${component}_PACKAGE_DEPENDS "cgsr (= ${PROJECT_VERSION})")

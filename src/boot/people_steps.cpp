@@ -54,7 +54,9 @@ Result<void> make_people(RobotState& state) {
   } else if (state.setup.live()) {
     recognizer = std::make_unique<tasks::LinkedRecognizer>(state.links);
   } else {
-    recognizer = std::make_unique<person::SteppedRecognizer>(std::move(*state.vision.people), parameters.answer_after_images);
+    recognizer =
+        std::make_unique<person::SteppedRecognizer>(std::move(*state.vision.people), parameters.answer_after_images);
+    state.vision.people.reset();
   }
   state.vision.parts.make<stages::IdentifyStage>(std::move(state.vision.face_detector), std::move(recognizer),
                                                  parameters);

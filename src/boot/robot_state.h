@@ -81,7 +81,7 @@ struct Calibration {
 struct Vision {
   std::shared_ptr<const world::Map> map;      ///< null: none.
   std::optional<color::ColorModel> model;     ///< of a file; none: it is learned from the first image, or not needed.
-  std::optional<person::FaceTrainer> people;  ///< who is enrolled; none: nobody is identified. While booting; afterwards the recogniser's.
+  std::optional<person::FaceTrainer> people;  ///< who is enrolled, until a recogniser takes it; none: nobody is.
   std::optional<person::FaceDetector> face_detector;  ///< while booting; afterwards it is the stage's.
   VisionParts parts;                                  ///< while booting; afterwards they are the loop's.
   std::optional<behavior::LearnedSize> learned;

@@ -206,6 +206,7 @@ Result<void> run_live(RobotState& state, StopRequest& stop) {
   tasks::HousekeepingTask housekeeping(state.links, state.outputs.sinks);
   std::optional<tasks::RecognitionTask> recognition;
   if (state.vision.people) recognition.emplace(std::move(*state.vision.people), state.links);
+  state.vision.people.reset();
   LiveLoops loops(capture, vision, motion, switches, recognition ? &*recognition : nullptr, housekeeping, state, stop);
 
   ThreadTable threads(stop);

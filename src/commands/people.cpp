@@ -91,6 +91,10 @@ CLI::App* add(CLI::App& people, const char* name, const char* meaning, const Opt
 void add_images(CLI::App* command, const Options& options) {
   command->add_option("--input", options->input, "video, image folder or image")->required();
   command->add_option("--cascade", options->cascade, "OpenCV's face cascade")->capture_default_str();
+  command
+      ->add_option("--eye-cascade", options->eye_cascade,
+                   "its eye cascade: what has no eye is no stranger's face; empty: eyes are not looked for")
+      ->capture_default_str();
   command->add_option("--min-face", options->min_face_px, "smallest face that is sought, pixels")
       ->check(in_range(20, 400))
       ->capture_default_str();

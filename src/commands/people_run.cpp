@@ -69,10 +69,10 @@ double mean_distance_among(const std::vector<FaceDescriptor>& faces, const std::
   return sum / static_cast<double>(chosen.size());
 }
 
-/// The faces that are alone in their image. Where none is found it is looked for where it was in the image before, as whoever is enrolled hardly moves.
+/// The faces that are alone in their image.
 Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enrolled& enrolled) {
-  auto detector = open_face_detector(options);
-  if (!detector) return tl::unexpected(detector.error());
+  auto search = FaceSearch::open(options);
+  if (!search) return tl::unexpected(search.error());
   auto input = ImageInput::open({options.input, 0, 0, 0, 0});
   if (!input) return tl::unexpected(input.error());
   std::vector<FaceDescriptor> faces;
@@ -82,19 +82,16 @@ Result<std::vector<FaceDescriptor>> lone_faces(const PeopleOptions& options, Enr
     ++enrolled.images;
     if (!next.image) continue;
     const ImageView image = next.image.view();
-    const auto found = detector->find_all(image);
-    if (found.size() > 1) continue;
     if (std::pair(image.width_px, image.height_px) != last_size) last.reset();
-    const auto face = found.empty() && last ? detector->find_near(image, *last)
-                      : found.empty()       ? std::nullopt
-                                            : std::optional(found.front());
-    if (!face) {
+    const auto found = search->find(image, last);
+    if (found.size() > 1) continue;
+    if (found.empty()) {
       last.reset();
       continue;
     }
-    last = face;
+    last = found.front();
     last_size = {image.width_px, image.height_px};
-    if (auto described = person::describe_face(image, *face)) faces.push_back(std::move(*described));
+    if (auto described = person::describe_face(image, *last)) faces.push_back(std::move(*described));
   }
   enrolled.with_one_face = static_cast<int>(faces.size());
   if (faces.empty()) {
@@ -195,10 +192,26 @@ Result<void> enroll_among(person::Identities& identities, const std::vector<Face
 
 }  // namespace
 
-Result<person::FaceDetector> open_face_detector(const PeopleOptions& options) {
+Result<FaceSearch> FaceSearch::open(const PeopleOptions& options) {
   person::FaceDetectorParameters parameters;
   parameters.min_face_px = options.min_face_px;
-  return read_face_detector(options.cascade, parameters);
+  auto detector = read_face_detector(options.cascade, parameters);
+  if (!detector) return tl::unexpected(detector.error());
+  auto eyes = read_eye_detector(options.eye_cascade);
+  if (!eyes) return tl::unexpected(eyes.error());
+  return FaceSearch(std::move(*detector), std::move(*eyes));
+}
+
+std::vector<Box> FaceSearch::find(const ImageView& image, const std::optional<Box>& last) {
+  auto faces = detector_.find_all(image);
+  if (!faces.empty()) return faces;
+  if (last) {
+    if (const auto face = detector_.find_near(image, *last)) return {*face};
+  }
+  if (!eyes_) return {};
+  faces = detector_.find_all_dark(image);
+  std::erase_if(faces, [&](const Box& face) { return !eyes_->has_eye(person::face_crop(image, face)); });
+  return faces;
 }
 
 // Looking through the images may take long: the file is not held meanwhile.
@@ -229,12 +242,12 @@ Result<Forgotten> forget(const PeopleOptions& options) {
   return Forgotten{kept_aside(options.identities)};
 }
 
-IdentifyRun::IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input,
-                         person::FaceDetector detector, std::optional<TextFile> csv)
+IdentifyRun::IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input, FaceSearch search,
+                         std::optional<TextFile> csv)
     : options_(std::move(options)),
       identities_(std::move(identities)),
       input_(std::move(input)),
-      detector_(std::move(detector)),
+      search_(std::move(search)),
       gallery_(gallery_of(identities_)),
       csv_(std::move(csv)) {}
 
@@ -243,13 +256,14 @@ Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
   files.reads(options.identities, "--identities");
   files.reads(options.input, "--input");
   files.reads(options.cascade, "--cascade");
+  if (!options.eye_cascade.empty()) files.reads(options.eye_cascade, "--eye-cascade");
   files.writes(options.csv, "--csv", csv_file(kColumns));
   if (auto claimed = files.claim(); !claimed) return tl::unexpected(claimed.error());
   auto identities = load_identities(options.identities);
   if (!identities) return tl::unexpected(identities.error());
   if (identities->people.empty()) return fail(fmt::format("{}: nobody is enrolled", options.identities));
-  auto detector = open_face_detector(options);
-  if (!detector) return tl::unexpected(detector.error());
+  auto search = FaceSearch::open(options);
+  if (!search) return tl::unexpected(search.error());
   auto input = ImageInput::open({options.input, 0, 0, 0, 0});
   if (!input) return tl::unexpected(input.error());
   std::optional<TextFile> csv;
@@ -259,22 +273,25 @@ Result<IdentifyRun> IdentifyRun::open(const PeopleOptions& options) {
     csv = std::move(*created);
     if (auto added = csv->add_line(kColumns); !added) return tl::unexpected(added.error());
   }
-  return IdentifyRun(options, std::move(*identities), std::move(*input), std::move(*detector), std::move(csv));
+  return IdentifyRun(options, std::move(*identities), std::move(*input), std::move(*search), std::move(csv));
 }
 
 Result<void> IdentifyRun::add_row(const std::string& row) {
   return csv_ ? csv_->add_line(row) : Result<void>{};
 }
 
-Result<void> IdentifyRun::add_face(const ImageView& image, const Box& face) {
+Result<bool> IdentifyRun::add_face(const ImageView& image, const Box& face) {
   const person::GreyPatch crop = person::face_crop(image, face);
-  if (crop.pixels.empty()) return {};
+  if (crop.pixels.empty()) return false;
   const auto match = person::identify_crop(crop, gallery_);
+  if (!match.label && !search_.has_eye(crop)) return false;
   const Label number = match.label.value_or(0);
   ++seen_[number];
   ++faces_;
-  return add_row(fmt::format("{},{},face,{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}", images_, number, match.confidence, face.x,
-                             face.y, face.width, face.height));
+  const auto added = add_row(fmt::format("{},{},face,{:.3f},{:.1f},{:.1f},{:.1f},{:.1f}", images_, number,
+                                         match.confidence, face.x, face.y, face.width, face.height));
+  if (!added) return tl::unexpected(added.error());
+  return true;
 }
 
 Result<bool> IdentifyRun::step() {
@@ -282,12 +299,13 @@ Result<bool> IdentifyRun::step() {
   if (next.end) return false;
   Result<void> written;
   if (next.image) {
-    const auto faces = detector_.find_all(next.image.view());
-    for (const Box& face : faces) {
-      written = add_face(next.image.view(), face);
-      if (!written) break;
+    bool any = false;
+    for (const Box& face : search_.find(next.image.view())) {
+      const auto added = add_face(next.image.view(), face);
+      if (!added) return tl::unexpected(added.error());
+      any = any || *added;
     }
-    if (faces.empty()) written = add_row(fmt::format("{},,none,,,,,", images_));
+    if (!any) written = add_row(fmt::format("{},,none,,,,,", images_));
   } else {
     if (problems_.size() < kMaxProblems) problems_.push_back(fmt::format("image {}: {}", images_, next.problem));
     ++unreadable_;

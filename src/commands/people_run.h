@@ -4,8 +4,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "pipeline/person/face/eye_detector.h"
 #include "pipeline/person/face/face_detector.h"
 #include "pipeline/person/face/face_gallery.h"
 #include "pipeline/person/identities.h"
@@ -17,6 +19,7 @@ namespace cgsr::app {
 
 /// Where Debian's opencv-data has the cascade of 6.2.1.
 inline constexpr const char* kFaceCascade = "/usr/share/opencv4/haarcascades/haarcascade_frontalface_alt2.xml";
+inline constexpr const char* kEyeCascade = "/usr/share/opencv4/haarcascades/haarcascade_eye.xml";
 
 struct PeopleOptions {
   std::string identities;
@@ -24,14 +27,31 @@ struct PeopleOptions {
   std::string input;
   std::string csv;
   std::string cascade = kFaceCascade;
+  std::string eye_cascade = kEyeCascade;  ///< empty: eyes are not looked for, nor dark faces.
   double min_face_px = person::FaceDetectorParameters{}.min_face_px;
   bool force = false;
   bool more = false;   ///< enroll: the person is known already, these are more views.
   bool alike = false;  ///< enroll: somebody else than those who are enrolled, however alike they are.
 };
 
-/// Loads the detector. \return an error that names the file and Debian's package.
-Result<person::FaceDetector> open_face_detector(const PeopleOptions& options);
+/// Finds the faces of single images: as they are, and where there is none, dark ones that have an eye.
+class FaceSearch {
+ public:
+  /// \return an error that names the file and Debian's package.
+  static Result<FaceSearch> open(const PeopleOptions& options);
+
+  /// \param last  a face of the image before, where one is sought before dark ones are: whoever is enrolled hardly moves.
+  std::vector<Box> find(const ImageView& image, const std::optional<Box>& last = std::nullopt);
+  /// \return whether it has an eye; true where eyes are not looked for.
+  bool has_eye(const person::GreyPatch& crop) { return !eyes_ || eyes_->has_eye(crop); }
+
+ private:
+  FaceSearch(person::FaceDetector detector, std::optional<person::EyeDetector> eyes)
+      : detector_(std::move(detector)), eyes_(std::move(eyes)) {}
+
+  person::FaceDetector detector_;
+  std::optional<person::EyeDetector> eyes_;
+};
 
 /// What `cgsr people enroll` did.
 struct Enrolled {
@@ -69,15 +89,16 @@ class IdentifyRun {
   [[nodiscard]] std::vector<std::string> summary() const;
 
  private:
-  IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input, person::FaceDetector detector,
+  IdentifyRun(PeopleOptions options, person::Identities identities, ImageInput input, FaceSearch search,
               std::optional<TextFile> csv);
   Result<void> add_row(const std::string& row);
-  Result<void> add_face(const ImageView& image, const Box& face);
+  /// \return whether it is a face: what is nobody's and has no eye is none.
+  Result<bool> add_face(const ImageView& image, const Box& face);
 
   PeopleOptions options_;
   person::Identities identities_;
   ImageInput input_;
-  person::FaceDetector detector_;
+  FaceSearch search_;
   person::FaceGallery gallery_;
   std::map<person::Label, int> seen_;  // 0: strangers
   std::optional<TextFile> csv_;

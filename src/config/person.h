@@ -25,9 +25,10 @@ struct Person {
                "nobody, unless "
                "by a marker.");
     visit.path("cascade", self.cascade, "The cascade that finds frontal faces, of Debian's package opencv-data.");
-    visit.path("eye_cascade", self.eye_cascade,
-               "The cascade that finds eyes, of the same package: what has none is no stranger's face. Empty: everything "
-               "that looks like a face is one.");
+    visit.path(
+        "eye_cascade", self.eye_cascade,
+        "The cascade that finds eyes, of the same package: what has none is no stranger's face. Empty: eyes are not "
+        "looked for, and what has none may be a stranger's face.");
     person::IdentifierParameters::describe(self.identifier, visit);
     visit.section("fill_light", self.fill_light, "A light on faces in the dark (6.4.1.1)");
   }

@@ -277,6 +277,9 @@ TEST_F(BadInputFault, PeopleWhoAreNotThere) {
   expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", folder, "--cascade",
                            scratch_ / "none.xml"}),
                  "Debian's opencv-data has one");
+  expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", folder,
+                           "--eye-cascade", scratch_ / "none.xml"}),
+                 "person.eye_cascade names another place, or none");
   expect_refused(run_cgsr({"people", "enroll", "--identities", people, "--name", "a", "--input", folder}),
                  "with exactly one face");
   EXPECT_FALSE(std::filesystem::exists(people));

@@ -111,6 +111,30 @@ TEST(FaceTracks, AskForNoMoreComparisonsInASecondThanAreAllowed) {
 }
 
 // How far the face stands out of the noise goes with the question; how bright it is does not matter.
+// What may be no face at all says nothing of whose it is: neither takes it a vote's place nor makes it what is known less sure.
+TEST(FaceTracks, AnAnswerThatDoesNotCountChangesNothing) {
+  FaceTracks faces = tracks();
+  look(faces, people_at({320}), 60, 2);
+  ASSERT_EQ(faces.tracks().size(), 1U);
+  FaceAnswer stranger, no_face;
+  stranger.face = no_face.face = faces.tracks().front().number;
+  stranger.match.confidence = no_face.match.confidence = 0.9;
+  stranger.match.nearest = 1;
+  stranger.match.rules_out = 0.8;
+  no_face.match.nearest = 2;
+  no_face.counts = false;
+  faces.hear(stranger);
+  for (int i = 0; i < 5; ++i) faces.hear(no_face);
+  EXPECT_FALSE(faces.tracks().front().match);
+  faces.hear(stranger);
+  ASSERT_TRUE(faces.tracks().front().match);
+  const FaceMatch known = *faces.tracks().front().match;
+  for (int i = 0; i < 5; ++i) faces.hear(no_face);
+  EXPECT_EQ(faces.tracks().front().match->confidence, known.confidence);
+  EXPECT_EQ(faces.tracks().front().match->rules_out, known.rules_out);
+  EXPECT_GT(known.rules_out, 0.5);
+}
+
 TEST(FaceTracks, TellHowFarAFaceStandsOutOfTheNoise) {
   const auto ratio_in = [](double noise) {
     cv::Mat grey = people_at({320}), noisy(480, 640, CV_8UC1), yuyv(480, 640, CV_8UC2, cv::Scalar(0, 128));

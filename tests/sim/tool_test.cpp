@@ -185,11 +185,18 @@ TEST_F(SimToolFault, WhatACommandLineGetsWrongIsNamed) {
 }
 
 TEST_F(SimToolFault, ALampOnARobotThatIsNotInThePictureIsNotSwitchedOn) {
-  const Outcome outcome =
-      run_cgsr({"render", "--world", "people", "--from", "0.8,0,1.45", "--to", "2.6,0,1.4", "--on", "face light",
-                "--output", scratch_ / "refused.png"});
+  const Outcome outcome = run_cgsr({"render", "--world", "people", "--from", "0.8,0,1.45", "--to", "2.6,0,1.4", "--on",
+                                    "face light", "--output", scratch_ / "refused.png"});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.errors, HasSubstr("the lamp of line 'face light' is carried by 'robot', which is not in a picture"));
+  EXPECT_THAT(outcome.errors,
+              HasSubstr("the lamp of line 'face light' is carried by 'robot', which is not in this picture"));
+  const Outcome own = run_cgsr(
+      {"render", "--world", "people", "--on", "face light", "--size", "160x120", "--output", scratch_ / "own.png"});
+  EXPECT_EQ(own.exit_code, 0) << own.errors;
+  const Outcome off =
+      run_cgsr({"render", "--world", "people", "--from", "0.8,0,1.45", "--to", "2.6,0,1.4", "--size", "160x120", "--on",
+                "face light", "--off", "face light", "--output", scratch_ / "off.png"});
+  EXPECT_EQ(off.exit_code, 0) << off.errors;
 }
 
 TEST_F(SimToolFault, SizesThatCannotBeAreRefused) {

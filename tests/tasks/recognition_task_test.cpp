@@ -19,7 +19,7 @@ namespace {
 TEST(RecognitionTask, AnswersTheQuestionThatItWasWokenForAndNoSecondOne) {
   Links links;
   LinkedRecognizer recognizer(links);
-  RecognitionTask task(person::FaceGallery{}, links);
+  RecognitionTask task(person::FaceTrainer(person::FaceGallery{}), links);
   EXPECT_FALSE(recognizer.answer());
   EXPECT_TRUE(recognizer.ask({7, {}}));
   EXPECT_FALSE(recognizer.ask({8, {}})) << "one question at a time";
@@ -51,7 +51,7 @@ TEST(RecognitionTask, HoldsNobodyUpWhileItComparesAndLearns) {
   constexpr std::size_t kPasses = 2;  // of the frame path at least, while one face is named
   Links links;
   LinkedRecognizer recognizer(links);
-  RecognitionTask task(crowd(600), links);
+  RecognitionTask task(person::FaceTrainer(crowd(600)), links);
   person::GreyPatch crop{kSide, kSide, std::vector<std::uint8_t>(std::size_t{kSide} * kSide)};
   for (std::size_t i = 0; i < crop.pixels.size(); ++i) crop.pixels[i] = static_cast<std::uint8_t>(i * i % 251);
   ASSERT_TRUE(recognizer.ask({1, crop}));
@@ -77,7 +77,7 @@ TEST(RecognitionTask, HandsOverBetweenTwoThreads) {
   constexpr std::uint32_t kQuestions = 200;
   Links links;
   LinkedRecognizer recognizer(links);
-  RecognitionTask task(person::FaceGallery{}, links);
+  RecognitionTask task(person::FaceTrainer(person::FaceGallery{}), links);
   const RealClock clock;
   std::atomic<bool> ends{false};
   std::thread thread([&] {

@@ -59,7 +59,8 @@ void add_render(CLI::App& command, RenderWords& words) {
       .add_option("--robot", words.request.robot, "whose camera; without a place of its own the picture is its view")
       ->excludes(view);
   command.add_option("--time", words.at_s, "when, seconds")->check(cgsr::app::in_range(0.0, 86400.0));
-  command.add_option("--on", words.request.on, "switch this line on")->allow_extra_args(false);
+  command.add_option("--on", words.request.on, "switch this line on; a lamp that a robot carries only in its own view")
+      ->allow_extra_args(false);
   command.add_option("--off", words.request.off, "switch this line off: room lamps are on, a robot's own are off")
       ->allow_extra_args(false);
   command.add_option("--seed", words.request.seed, "of the noise")

@@ -34,16 +34,20 @@ Result<SwitchStates> lines(const Scene& scene, const PictureRequest& request) {
       line->second = on;
     }
   }
-  // Robots are not in a picture from a free place, and neither is what they carry.
-  const bool free = request.X_WC || !request.view.empty();
+  return states;
+}
+
+/// \param figure  of the robot whose view it is; -1: nobody's.  \return an error where a lamp is on whose robot is not in the picture.
+Result<void> check_carried_lamps(const Scene& scene, const SwitchStates& switches, int figure) {
   for (const Lamp& lamp : scene.lamps) {
-    if (!free || lamp.carried_by < 0 || std::ranges::find(request.on, lamp.switch_name) == request.on.end()) continue;
+    if (lamp.carried_by < 0 || lamp.carried_by == figure || lamp.switch_name.empty()) continue;
+    if (!switches.at(lamp.switch_name)) continue;
     return fail(
-        fmt::format("the lamp of line '{}' is carried by '{}', which is not in a picture from a free place: without "
-                    "one the picture is a robot's view",
+        fmt::format("the lamp of line '{0}' is carried by '{1}', which is not in this picture: --robot {1}, without "
+                    "another place for the camera, is its view",
                     lamp.switch_name, scene.figures[static_cast<std::size_t>(lamp.carried_by)].name));
   }
-  return states;
+  return {};
 }
 
 Result<const World::View*> find_view(const World& world, const std::string& name) {
@@ -81,6 +85,8 @@ Result<Take> compose(const World& world, const PictureRequest& request) {
   } else {
     take.robot = *robot;
   }
+  const auto lit = check_carried_lamps(world.scene, *switches, take.robot < 0 ? -1 : body.figure);
+  if (!lit) return tl::unexpected(lit.error());
   // A robot sees itself, not the others of the file, which start where it does.
   const std::vector<Pose> X_WR = take.robot < 0 ? std::vector<Pose>{} : scripted_robots(world, at_s);
   take.moment.state = state_at(world.scene, at_s, *switches, X_WR);

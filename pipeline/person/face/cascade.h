@@ -30,6 +30,8 @@ class Cascade {
   std::vector<cv::Rect> find(const GreyPatch& patch, const CascadeSearch& search);
 
  private:
+  Cascade() = default;
+
   cv::CascadeClassifier classifier_;
 };
 

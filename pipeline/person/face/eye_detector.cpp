@@ -9,10 +9,9 @@
 namespace cgsr::person {
 namespace {
 
-// The upper half of the face, and some of the margin: the detector's box is up to a third too small or too large.
+// The upper two thirds of the face, and some of the margin: the detector's box is up to a third too small or too large.
 constexpr int kLeft_px = 20, kTop_px = 20, kWidth_px = kFaceCrop_px - 2 * kLeft_px, kHeight_px = kFaceCrop_px / 2;
 constexpr CascadeSearch kEyes{.step = 1.1, .min_neighbors = 1, .min_px = 20, .max_px = 48};
-constexpr double kMaxStretch = 3.0;  // as for faces: the cascade passes over windows of little contrast
 
 }  // namespace
 
@@ -27,7 +26,7 @@ Result<EyeDetector> EyeDetector::from_cascade(const std::string& cascade_xml) {
   return EyeDetector(std::make_unique<Cascade>(std::move(*cascade)));
 }
 
-bool EyeDetector::sees_eye(const GreyPatch& crop) {
+bool EyeDetector::has_eye(const GreyPatch& crop) {
   if (crop.width_px != kFaceCrop_px || crop.height_px != kFaceCrop_px || crop.pixels.empty()) return false;
   GreyPatch upper{kWidth_px, kHeight_px, {}};
   upper.pixels.reserve(std::size_t{kWidth_px} * kHeight_px);
@@ -35,7 +34,7 @@ bool EyeDetector::sees_eye(const GreyPatch& crop) {
     const auto row = crop.pixels.begin() + std::ptrdiff_t{kTop_px + y} * kFaceCrop_px + kLeft_px;
     upper.pixels.insert(upper.pixels.end(), row, row + kWidth_px);
   }
-  stretch_contrast(upper, kMaxStretch);
+  stretch_contrast(upper);
   return !cascade_->find(upper, kEyes).empty();
 }
 

@@ -24,7 +24,7 @@ class EyeDetector {
 
   /// \param crop  as face_crop() cuts it; in anything else there is no eye.
   /// Cost: 7 million instructions.
-  [[nodiscard]] bool sees_eye(const GreyPatch& crop);
+  [[nodiscard]] bool has_eye(const GreyPatch& crop);
 
  private:
   explicit EyeDetector(std::unique_ptr<Cascade> cascade);

@@ -26,7 +26,7 @@ constexpr int kReach = 3;      // steps by which a point may lie off
 constexpr int kSpacing = 3;    // steps between a view's points
 constexpr int kAround_px = 9;  // within which the contrast is made equal: a box, twice
 constexpr float kMinContrast = 0.003F;
-constexpr float kMinNorm = 0.1F;   // of a descriptor whose cells hold hundreds; less is what rounding leaves of nothing
+constexpr float kMinNorm = 0.1F;  // of a descriptor whose cells hold hundreds; less is what rounding leaves of nothing
 // Of a component, before the second normalisation. Lowe (2004) has .2; less than a component's mean share is better here, for how strong an edge
 // of a face is changes with where the light comes from, its direction hardly.
 constexpr float kMaxShare = 0.08F;

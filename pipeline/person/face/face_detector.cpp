@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <opencv2/imgproc.hpp>
-
 #include "pipeline/person/face/cascade.h"
 #include "pipeline/person/face/grey_region.h"
 
@@ -29,25 +27,10 @@ struct Cut {
 constexpr Cut kRoughCut{kWindow_px, 104.0, 90.0};
 constexpr Cut kCloseCut{kClose_px, 130.0, 100.0};
 
-// OpenCV's cascade passes over every window whose grey values deviate by less than ten: a face in little light, or whose brows and hair are
-// nearly as light as its skin, in the values 16 to 235 of a camera. What it looks at is stretched, by no more than noise allows.
-constexpr double kMaxStretch = 3.0;
-
 GreyPatch patch_for_cascade(const ImageView& image, const Box& region, int width_px, int height_px) {
   GreyPatch patch = quick_grey_region(image, region, width_px, height_px);
-  if (!patch.pixels.empty()) stretch_contrast(patch, kMaxStretch);
+  if (!patch.pixels.empty()) stretch_contrast(patch);
   return patch;
-}
-
-// Contrast limited adaptive histogram equalisation (Zuiderveld, 1994), OpenCV's. Stretching does not help a dark face before a bright wall.
-GreyPatch equal_contrast(const ImageView& image) {
-  constexpr double kClipLimit = 4.0;  // of 2 to 8 and 4 to 12 tiles: the most drawn faces, and no more of what is none
-  constexpr int kTiles = 8;
-  const Box whole{0, 0, static_cast<double>(image.width_px), static_cast<double>(image.height_px)};
-  GreyPatch grey = grey_region(image, whole, image.width_px, image.height_px);
-  cv::Mat pixels(grey.height_px, grey.width_px, CV_8UC1, grey.pixels.data());
-  cv::createCLAHE(kClipLimit, {kTiles, kTiles})->apply(pixels, pixels);
-  return grey;
 }
 
 int tiles_along(double length_px, double tile_px, double overlap_px) {
@@ -111,8 +94,8 @@ SearchStep shifted(SearchStep slice, std::size_t round) {
 }
 
 // Appends the rough places of faces in a slice, scaled so that the smallest are of face_px.
-void look_at(const ImageView& image, const SearchStep& slice, double face_px, int neighbors,
-             Cascade& cascade, std::vector<Box>& rough) {
+void look_at(const ImageView& image, const SearchStep& slice, double face_px, int neighbors, Cascade& cascade,
+             std::vector<Box>& rough) {
   const double scale = face_px / slice.min_face_px;
   const Box& region = slice.region;
   const int width = static_cast<int>(std::lround(region.width * scale));
@@ -185,15 +168,8 @@ void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
 }
 
 std::vector<Box> FaceDetector::find_all(const ImageView& image) {
-  if (image.empty()) return {};
-  auto faces = find_all_as_it_is(image);
-  if (!faces.empty()) return faces;
-  GreyPatch equal = equal_contrast(image);
-  return find_all_as_it_is({equal.pixels.data(), equal.width_px, equal.height_px, equal.width_px, PixelFormat::kGrey8});
-}
-
-std::vector<Box> FaceDetector::find_all_as_it_is(const ImageView& image) {
   std::vector<Box> faces;
+  if (image.empty()) return faces;
   const int neighbors = std::min(1, parameters_.min_neighbors);
   for (const SearchStep& slice : slices_of(image.width_px, image.height_px, parameters_.min_face_px, kCloseCut)) {
     std::vector<Box> noticed;
@@ -209,6 +185,12 @@ std::vector<Box> FaceDetector::find_all_as_it_is(const ImageView& image) {
     }
   }
   return faces;
+}
+
+std::vector<Box> FaceDetector::find_all_dark(const ImageView& image) {
+  if (image.empty()) return {};
+  const GreyPatch grey = equalized_locally(image);
+  return find_all({grey.pixels.data(), grey.width_px, grey.height_px, grey.width_px, PixelFormat::kGrey8});
 }
 
 std::vector<SearchStep> FaceDetector::round_of(int width_px, int height_px) const {

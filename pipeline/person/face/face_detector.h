@@ -66,15 +66,16 @@ class FaceDetector {
   ///     gives it.
   void search(const ImageView& image, std::vector<Box>& faces);
 
-  /// All faces of one image, every position looked at, in steps of a tenth of the size; where there is none, once more with the contrast made equal
-  /// place by place, for a dark face in a bright room. For enrolment and single images, not for the frame path.
+  /// All faces of one image, every position looked at, in steps of a tenth of the size: for enrolment and single images, not for the frame path.
   std::vector<Box> find_all(const ImageView& image);
+
+  /// The same in equalized_locally(): dark faces in a bright room, and more of what is none.
+  std::vector<Box> find_all_dark(const ImageView& image);
 
   /// \return the slices of which a round through a whole image of this size consists.
   [[nodiscard]] std::vector<SearchStep> round_of(int width_px, int height_px) const;
 
  private:
-  std::vector<Box> find_all_as_it_is(const ImageView& image);
   FaceDetector(std::unique_ptr<Cascade> cascade, const FaceDetectorParameters& parameters);
 
   std::unique_ptr<Cascade> cascade_;

@@ -45,6 +45,9 @@ struct FaceMatchParameters {
   }
 };
 
+/// The confidence from which on 'a stranger's' counts, and a name against another one that is known: below, the face lies at the threshold.
+inline constexpr double kClearConfidence = 0.55;
+
 /// Whose face it is.
 struct FaceMatch {
   std::optional<Label> label;    ///< nothing: a stranger's.

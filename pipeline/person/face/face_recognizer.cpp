@@ -75,11 +75,8 @@ FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   }
   FaceMatch& match = compared->match;
   allow_for_noise(question.signal_to_noise, match);
-  if (!match.label && match.confidence > 0.5 && eyes_ && !eyes_->sees_eye(question.crop)) {
-    match.confidence = 0.5;
-    match.rules_out = 0.0;
-  }
-  const FaceAnswer answer{question.face, match};
+  const bool stranger = !match.label && match.confidence >= kClearConfidence;
+  const FaceAnswer answer{question.face, match, !stranger || !eyes_ || eyes_->has_eye(question.crop)};
   if (match.margin <= 0.0) return answer;
   if (match.margin >= kSure * gallery_.parameters().min_margin) {
     if (match.nearest != before.person) before = {.face = question.face, .person = *match.nearest};

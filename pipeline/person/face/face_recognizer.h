@@ -25,6 +25,7 @@ struct FaceQuestion {
 struct FaceAnswer {
   std::uint32_t face = 0;
   FaceMatch match;
+  bool counts = true;  ///< false: nothing is known of whose it is, for it may be no face.
 };
 
 /// Describes the face in a crop and compares it with everybody's (6.2.1). The detector's box is up to a third too small or too large, and a face that lies
@@ -44,13 +45,13 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
 /// Bounded: kFaces faces are remembered, FaceMatchParameters::max_learned_views views of each. Threads: one, the recogniser's.
 class FaceTrainer {
  public:
-  /// \param eyes  what has no eye is nobody's face; nothing: that is not asked.
+  /// \param eyes  what has no eye is no stranger's face; nothing: eyes are not looked for.
   explicit FaceTrainer(FaceGallery gallery, std::optional<EyeDetector> eyes = std::nullopt)
       : gallery_(std::move(gallery)), eyes_(std::move(eyes)) {}
 
   /// Noise makes a face farther from everybody, its own views too: of one that hardly stands out of it, 'a stranger's' and 'nobody else's' are less sure.
-  /// 'A stranger's' of what has no eye says nothing: 0.5.
-  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where there is none.
+  /// 'A stranger's' of what has no eye does not count.
+  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where it is clearly a stranger's.
   FaceAnswer answer(const FaceQuestion& question);
 
   /// \return how many views were learned of a face.

@@ -169,6 +169,7 @@ void FaceTracks::hear(const FaceAnswer& answer) {
   const auto track = std::ranges::find(tracks_, answer.face, &FaceTrack::number);
   if (track == tracks_.end()) return;
   ++track->compared_;
+  if (!answer.counts) return;
   track->votes_.add(answer.match, parameters_.min_agreeing);
   track->match = track->votes_.match();
 }

@@ -21,8 +21,7 @@ bool FaceVotes::contradicted() const {
 }
 
 void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
-  constexpr double kClear = 0.55;
-  if (match_ && answer.label != match_->label && answer.confidence < kClear) {
+  if (match_ && answer.label != match_->label && answer.confidence < kClearConfidence) {
     if (answer.nearest != match_->nearest) match_->rules_out = 0.0;
     return;
   }
@@ -32,7 +31,7 @@ void FaceVotes::add(const FaceMatch& answer, int min_agreeing) {
   int agreeing = 0;
   double evidence = 0.0, rules_out = answer.rules_out;
   for (const FaceMatch& vote : std::span(votes_).first(vote_count_)) {
-    if (vote.label != answer.label || (!vote.label && vote.confidence < kClear)) continue;
+    if (vote.label != answer.label || (!vote.label && vote.confidence < kClearConfidence)) continue;
     ++agreeing;
     evidence += evidence_of(vote.confidence);
     rules_out = vote.nearest == answer.nearest ? std::min(rules_out, vote.rules_out) : 0.0;

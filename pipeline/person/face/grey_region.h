@@ -26,7 +26,15 @@ GreyPatch grey_region(const ImageView& image, const Box& region, int width_px, i
 /// be left out, and the rest is stretched over its place.
 GreyPatch quick_grey_region(const ImageView& image, const Box& region, int width_px, int height_px);
 
+/// OpenCV's cascades pass over every window whose grey values deviate by less than ten: a face in little light, or whose brows and hair are nearly as light
+/// as its skin, in the values 16 to 235 of a camera. What they look at is stretched, by no more than noise allows.
+inline constexpr double kMaxStretch = 3.0;
+
 /// Spreads a patch's values over 0 to 255, but no farther than by a factor; a few in a thousand of the darkest and the brightest are cut off.
-void stretch_contrast(GreyPatch& patch, double max_factor);
+void stretch_contrast(GreyPatch& patch, double max_factor = kMaxStretch);
+
+/// Contrast limited adaptive histogram equalisation (Zuiderveld, 1994), OpenCV's: stretching does not help a dark face before a bright wall.
+/// \return a whole image, grey.
+GreyPatch equalized_locally(const ImageView& image);
 
 }  // namespace cgsr::person

@@ -134,7 +134,7 @@ std::filesystem::path file_of(const std::filesystem::path& folder, int number) {
 }
 
 Result<cv::Mat> kept_or_painted(const Film& film, int number, const std::filesystem::path& folder) {
-  if (!folder.empty()) {
+  if (!folder.empty() && std::filesystem::exists(file_of(folder, number))) {
     cv::Mat kept = cv::imread(file_of(folder, number).string());
     if (!kept.empty()) return kept;
   }
