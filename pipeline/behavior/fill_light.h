@@ -11,7 +11,7 @@ namespace cgsr::behavior {
 struct FaceEvidence {
   bool expected =
       false;  ///< somebody is there by another characteristic and his face would be within the image, or nobody is known to be there and a face is waited for.
-  bool seen = false;  ///< a face is there.
+  bool seen = false;  ///< a face is there; where nobody is known to be, one of which it is known whose it is.
   double dark =
       0.0;  ///< the share of the pixels at its place that are too dark for a hue, in [0, 1]; where one is expected or seen.
   bool lost = false;  ///< nobody is seen by anything.

@@ -1,5 +1,6 @@
 #include "pipeline/stages/tasks.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -121,8 +122,8 @@ void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const Imag
     evidence.seen = people->person.source == person::PersonSource::kFace;
     if (evidence.seen) evidence.dark = person::context_of(image, people->person.box).dark;
     const bool nobody = people->person.source == person::PersonSource::kNone;
-    if (nobody) {  // waits for a face: of whom nothing is known yet the light may show it
-      evidence.seen = !people->seen_faces().empty();
+    if (nobody) {  // waits for a face: of whom nothing is known yet the light may show it, or whose one in the noise is
+      evidence.seen = std::ranges::any_of(people->seen_faces(), &person::SeenFace::compared);
       evidence.lost = !evidence.seen;
       evidence.expected = true;
       evidence.dark = person::mean_luma(image, where_faces_are(image)) <= light_->max_waiting_luma() ? 1.0 : 0.0;

@@ -207,6 +207,27 @@ TEST_F(FollowPerson, AsksForTheFillLightWhereTheFaceIsInTheDark) {
   EXPECT_FALSE(asks(turned, dark, 60)) << "the face was seen in that dark";
 }
 
+// Of a face that is found in the noise of the dark it stays open whose it is: that one needs the light.
+TEST_F(FollowPerson, AsksForTheFillLightWhereAFaceInTheDarkStaysUnnamed) {
+  behavior::FillLightParameters light;
+  light.enabled = true;
+  std::vector<std::uint8_t> dark(std::size_t{2} * 640 * 480);
+  for (std::size_t i = 0; i < dark.size(); ++i) dark[i] = i % 2 == 0 ? 18 : 128;
+  const auto asks = [&](bool compared) {
+    FollowPersonTask task({.number = 4}, {}, {}, camera_, light);
+    FrameResult frame;
+    frame.people.age = Duration::zero();
+    frame.people.value.face_count = 1;
+    frame.people.value.faces[0] = {
+        .number = 1, .box = {290, 100, 60, 60}, .compared = compared, .person = std::nullopt, .confidence = 0.6};
+    Decision last;
+    for (int i = 0; i < 60; ++i) last = task.decide(frame, {dark.data(), 640, 480, 1280, PixelFormat::kYuyv}, kImage);
+    return last.requests.lamps[static_cast<std::size_t>(LampLine::kFillLight)];
+  };
+  EXPECT_TRUE(asks(false));
+  EXPECT_FALSE(asks(true)) << "a stranger";
+}
+
 TEST_F(FollowPerson, DoesNotDriveByAnIdentificationThatIsNotOfThisImage) {
   auto follower = task(4);
   FrameResult frame;
