@@ -74,6 +74,28 @@ TEST(FaceTrainer, DoesNotCountAStrangerWithoutEyes) {
   EXPECT_TRUE(asks_not.answer(none).counts);
 }
 
+TEST(FaceTrainer, CountsAStrangerThatHasShownAnEyeBefore) {
+  FaceGallery gallery({.min_views = 1});
+  cv::Mat other(kHeight, kWidth, CV_8U);
+  cv::RNG(1).fill(other, cv::RNG::UNIFORM, 60, 200);
+  gallery.enroll(1, view_of(*describe_crop(crop_of(other))));
+  FaceTrainer trainer(gallery, eyes_of_debian());
+  ASSERT_TRUE(trainer.answer({1, crop_of(with_a_face())}).counts);
+  EXPECT_TRUE(trainer.answer({1, crop_of(without_eyes())}).counts);
+  EXPECT_FALSE(trainer.answer({2, crop_of(without_eyes())}).counts) << "another face";
+}
+
+TEST(FaceTrainer, LooksForEyesTwiceInFiveAnswers) {
+  FaceGallery gallery({.min_views = 1});
+  cv::Mat other(kHeight, kWidth, CV_8U);
+  cv::RNG(1).fill(other, cv::RNG::UNIFORM, 60, 200);
+  gallery.enroll(1, view_of(*describe_crop(crop_of(other))));
+  FaceTrainer trainer(gallery, eyes_of_debian());
+  for (const std::uint32_t number : {1, 2}) EXPECT_FALSE(trainer.answer({number, crop_of(without_eyes())}).counts);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(trainer.answer({3, crop_of(with_a_face())}).counts) << i;
+  EXPECT_TRUE(trainer.answer({3, crop_of(with_a_face())}).counts);
+}
+
 TEST(FaceTrainer, NamesWhoIsEnrolledWithOrWithoutEyes) {
   FaceGallery gallery({.min_views = 1});
   gallery.enroll(1, view_of(*describe_crop(crop_of(without_eyes()))));

@@ -23,7 +23,7 @@ class EyeDetector {
   ~EyeDetector();
 
   /// \param crop  as face_crop() cuts it; in anything else there is no eye.
-  /// Cost: 7 million instructions.
+  /// Cost: 20 million instructions.
   [[nodiscard]] bool has_eye(const GreyPatch& crop);
 
  private:

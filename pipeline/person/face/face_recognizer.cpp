@@ -60,9 +60,19 @@ std::size_t FaceTrainer::learned(std::uint32_t face) const {
   return known == followed_.end() ? 0 : known->learned.size();
 }
 
+// Looked for until it was seen once: a face that has eyes keeps them.
+bool FaceTrainer::has_eye(Followed& face, const GreyPatch& crop) {
+  if (face.has_eye || !eyes_) return true;
+  if (looked_for_eyes_.count() >= kMaxEyeLooks) return false;
+  looked_for_eyes_.set(0);
+  face.has_eye = eyes_->has_eye(crop);
+  return face.has_eye;
+}
+
 FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   constexpr double kSure = 2.0;  // of the least margin that names a face
   constexpr int kTwice = 2;
+  looked_for_eyes_ <<= 1U;
   Followed& before = followed(question.face);
   auto compared = compare(question.crop, gallery_, std::nullopt, {before.person, before.learned});
   if (!compared) return {question.face, {}};
@@ -76,10 +86,11 @@ FaceAnswer FaceTrainer::answer(const FaceQuestion& question) {
   FaceMatch& match = compared->match;
   allow_for_noise(question.signal_to_noise, match);
   const bool stranger = !match.label && match.confidence >= kClearConfidence;
-  const FaceAnswer answer{question.face, match, !stranger || !eyes_ || eyes_->has_eye(question.crop)};
+  const FaceAnswer answer{question.face, match, !stranger || has_eye(before, question.crop)};
   if (match.margin <= 0.0) return answer;
   if (match.margin >= kSure * gallery_.parameters().min_margin) {
-    if (match.nearest != before.person) before = {.face = question.face, .person = *match.nearest};
+    if (match.nearest != before.person)
+      before = {.face = question.face, .person = *match.nearest, .has_eye = before.has_eye};
     ++before.sure;
     before.view = view_of(compared->face);
   } else if (match.nearest == before.person && before.sure >= kTwice && is_near()) {

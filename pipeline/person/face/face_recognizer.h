@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -45,13 +46,15 @@ FaceMatch identify_crop(const GreyPatch& crop, const FaceGallery& gallery, std::
 /// Bounded: kFaces faces are remembered, FaceMatchParameters::max_learned_views views of each. Threads: one, the recogniser's.
 class FaceTrainer {
  public:
+  static constexpr std::size_t kMaxEyeLooks = 2;  ///< in any five answers: what recognition costs has a bound.
+
   /// \param eyes  what has no eye is no stranger's face; nothing: eyes are not looked for.
   explicit FaceTrainer(FaceGallery gallery, std::optional<EyeDetector> eyes = std::nullopt)
       : gallery_(std::move(gallery)), eyes_(std::move(eyes)) {}
 
   /// Noise makes a face farther from everybody, its own views too: of one that hardly stands out of it, 'a stranger's' and 'nobody else's' are less sure.
-  /// 'A stranger's' of what has no eye does not count.
-  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where it is clearly a stranger's.
+  /// 'A stranger's' of what has not shown an eye in any crop does not count.
+  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where it is clearly a stranger's and has not shown an eye yet. Beyond kMaxEyeLooks it does not count either.
   FaceAnswer answer(const FaceQuestion& question);
 
   /// \return how many views were learned of a face.
@@ -63,14 +66,17 @@ class FaceTrainer {
     std::uint32_t face = 0;  // number of its track; 0: none
     Label person = 0;        // whose it was
     int sure = 0;            // answers in a row
+    bool has_eye = false;    // in one of its crops at least
     FaceView view{};         // how it was
     std::vector<FaceView> learned{};
   };
   Followed& followed(std::uint32_t face);
+  bool has_eye(Followed& face, const GreyPatch& crop);
   void learn(Followed& face) const;
 
   FaceGallery gallery_;
   std::optional<EyeDetector> eyes_;
+  std::bitset<5> looked_for_eyes_;  // in this answer, the lowest, and the four before it
   std::array<Followed, kFaces> followed_{};
 };
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/person/face/face_recognizer.h"
 #include "pipeline/person/face/face_tracks.h"
 #include "tools/lab/counting.h"
 #include "tools/lab/experiment.h"
@@ -21,11 +22,13 @@ namespace {
 
 constexpr double kImages_per_s = 30.0;
 constexpr double kInstructions_per_image_m = 1000.0 / kImages_per_s;  // Minstr: 1 GHz, one in each cycle
+constexpr int kGallery = 4;                                           // people, identities 0 to 3
 constexpr double kCounted_s = 5.0, kTurns_s = 3.0;                    // from the front, then turned away and walking
 
 struct Variant {
   const char* name;
   const char* keys;
+  int identity = 0;  // of whoever is seen
 };
 constexpr Variant kVariants[] = {
     {"face alone, in every image",
@@ -33,18 +36,20 @@ constexpr Variant kVariants[] = {
     {"face alone, in every other image", "person.tracker = {shirt.enabled = false, face_color.enabled = false}\n"},
     {"face and shirt", "person.tracker.face_color.enabled = false\n"},
     {"face, face colour and shirt", ""},  // as it ships: the face in every other image
+    {"the same, of a stranger", "", 4},
 };
 
 /// The robot stands (6.2): where it drives, the counted run would have to repeat every motion of the one that drew its images.
-Result<void> write_scene(const TableFolder& folder) {
+Result<void> write_scene(const TableFolder& folder, int identity) {
   const auto arena = empty_arena();
   if (!arena) return tl::unexpected(arena.error());
-  std::ofstream(folder / "world.toml") << *arena
-                                       << fmt::format(
-                                              "[[person]]\nname = \"somebody\"\nidentity = 0\n[person.walk]\nstop = [\n"
-                                              "{{ at_m = [2.4, 0.0, 0.0], wait_s = {}, heading_deg = 180.0 }},\n"
-                                              "{{ at_m = [3.2, 0.3, 0.0], speed_mps = 0.4, heading_deg = 0.0 }}]\n",
-                                              kTurns_s);
+  std::ofstream(folder / "world.toml")
+      << *arena
+      << fmt::format(
+             "[[person]]\nname = \"somebody\"\nidentity = {}\n[person.walk]\nstop = [\n"
+             "{{ at_m = [2.4, 0.0, 0.0], wait_s = {}, heading_deg = 180.0 }},\n"
+             "{{ at_m = [3.2, 0.3, 0.0], speed_mps = 0.4, heading_deg = 0.0 }}]\n",
+             identity, kTurns_s);
   std::ofstream(folder / "scenario.toml") << fmt::format(
       "world = \"world.toml\"\nrobot = \"robot\"\nends_at_s = {}\n[[line]]\nname = \"arming\"\ninput = true\n"
       "[[line]]\nname = \"face light\"\n",
@@ -68,7 +73,8 @@ Cost cost_of(const Counted& counted, const std::string& stage) {
   return found == counted.stages.end() ? Cost{} : found->second;
 }
 
-void add_rows(const Variant& variant, const Counted& counted, Report& report) {
+/// \param dearest_minstr  of the comparisons without a look for eyes so far; this variant's is added.
+void add_rows(const Variant& variant, const Counted& counted, double& dearest_minstr, Report& report) {
   const auto trials = static_cast<std::size_t>(counted.images);
   const auto add = [&](const char* quantity, const char* unit, double value, Join join) {
     report.rows.push_back(plain_row(variant.name, quantity, unit, value, trials, join));
@@ -86,9 +92,12 @@ void add_rows(const Variant& variant, const Counted& counted, Report& report) {
   add("from crop to answer at 1 GHz, the frame path first", "ms", answer_ms, Join::kWeighted);
   add("from the first crop to a name at 1 GHz, the frame path first", "ms",
       person::FaceTrackParameters{}.min_agreeing * answer_ms, Join::kWeighted);
+  const bool known = variant.identity < kGallery;
+  if (known) dearest_minstr = std::max(dearest_minstr, recognition.worst_minstr);
+  const double look_minstr = known ? 0.0 : std::max(0.0, recognition.worst_minstr - dearest_minstr);
   const double comparisons = person::FaceTrackParameters{}.max_comparisons;
-  add("recognition beside the frame path, at most in a second", "Minstr",
-      comparisons * recognition.worst_minstr / kImages_per_s, Join::kMax);
+  const double second_minstr = comparisons * dearest_minstr + person::FaceTrainer::kMaxEyeLooks * look_minstr;
+  add("recognition beside the frame path, at most in a second", "Minstr", second_minstr / kImages_per_s, Join::kMax);
 }
 
 }  // namespace
@@ -101,22 +110,24 @@ Result<Report> figure_6_7(const Setting& setting) {
   Portraits portraits(folder);
   if (const auto enrolled = enroll_all({0, 1, 2, 3}, portraits, folder / "identities"); !enrolled)
     return tl::unexpected(enrolled.error());
-  if (const auto written = write_scene(folder); !written) return tl::unexpected(written.error());
   Report report;
   report.title = fmt::format("instructions per image of identifying one of four people, {} s", kCounted_s);
+  double dearest_minstr = 0.0;
   for (const Variant& variant : kVariants) {
+    if (const auto written = write_scene(folder, variant.identity); !written) return tl::unexpected(written.error());
     setting.progress(fmt::format("figure 6.7, {}", variant.name));
     const auto counted = count_variant(folder, shipped, setting.seed, variant);
     if (!counted) return tl::unexpected(counted.error());
-    add_rows(variant, *counted, report);
+    add_rows(variant, *counted, dearest_minstr, report);
   }
   report.notes = {
       "SSE2 baseline, counted by tools/count; repeats exactly. Somebody is seen from the front and turns away; the "
       "robot stands.",
       "Recognition is what the thread of that name does on a robot: its mean is over all images, the frame path is "
       "without it. At most in a second: as many comparisons as the robot may make in 30 images, each as dear as the "
-      "dearest "
-      "that was counted. The name of a face needs two answers that agree, one after the other."};
+      "dearest that was counted; of a stranger, as many looks for eyes as may come with them, each as dear as the "
+      "stranger's dearest comparison exceeds that. The name of a face needs two answers that agree, one after the "
+      "other."};
   return report;
 }
 
