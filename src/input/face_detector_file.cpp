@@ -26,8 +26,9 @@ Result<std::optional<person::EyeDetector>> read_eye_detector(const std::filesyst
   if (cascade.empty()) return std::nullopt;
   const auto text = read_small_file(cascade, kMaxCascadeBytes, "an eye cascade");
   if (!text)
-    return fail(text.error().message +
-                "; Debian's opencv-data has one: person.eye_cascade names another place, or none (\"\")");
+    return fail(
+        text.error().message +
+        "; Debian's opencv-data has one: --eye-cascade or person.eye_cascade names another place, or none (\"\")");
   auto detector = person::EyeDetector::from_cascade(*text);
   if (!detector) return fail(fmt::format("{}: {}", cascade.string(), detector.error().message));
   return std::optional(std::move(*detector));
