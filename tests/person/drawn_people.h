@@ -48,11 +48,17 @@ inline FaceSighting face_of(std::optional<Label> person, double confidence = 0.9
   return {kFaceBox, match};
 }
 
+/// What the last look for a face said holds until the next one.
+inline void pass_to_next_look(PersonTracker& tracker, const Picture& picture) {
+  while (!tracker.face_is_due()) tracker.update({picture.view()});
+}
+
 inline void learn(PersonTracker& tracker, Label person, const Rgb& shirt) {
   const Picture picture = standing(shirt);
   // Ten faces; once somebody's shirt is known they are looked for in every other image only.
   for (int image = 0; image < 20 && !tracker.shirts().knows(person); ++image)
     tracker.update({picture.view(), face_of(person)});
+  pass_to_next_look(tracker, picture);
 }
 
 }  // namespace cgsr::person

@@ -51,6 +51,7 @@ TEST(ShirtPlace, VetoesAPlaceOfImplausibleSize) {
   const Picture picture = standing(kRed);
   learn(tracker, 1, kRed);
   show_face(tracker, picture);
+  pass_to_next_look(tracker, picture);
   for (int image = 0; image < 10; ++image) EXPECT_EQ(tracker.update({picture.view()}).person, std::nullopt) << image;
 }
 

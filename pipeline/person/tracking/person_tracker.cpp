@@ -116,7 +116,7 @@ PersonSighting PersonTracker::update(const PersonImage& input, const PersonConte
   keep_face(now, due);
   shirts_.observe(now);
   if (now.face) face_colors_.observe_face(now, *now.face);
-  if (!settled) return {};
+  if (!settled) return due || input.image.empty() ? PersonSighting{} : by_last_look();
   PersonSighting sighting;
   sighting.person = settled->label;
   sighting.confidence = settled->confidence;
@@ -171,6 +171,14 @@ void PersonTracker::confirm_head(const PersonImage& input, const PersonSighting&
   if (sighting.source == PersonSource::kFace) face_colors_.confirm(*sighting.person, sighting.box);
   if (sighting.source == PersonSource::kShirt && sighting.face_px > 0.0)
     face_colors_.confirm(*sighting.person, face_above(sighting.box, sighting.face_px));
+}
+
+// Between two looks for a face, where nothing else says who is there, whoever was named by the last one still is.
+PersonSighting PersonTracker::by_last_look() const {
+  if (!by_face_ || since_by_face_ > 0) return {};
+  PersonSighting sighting = *by_face_;
+  sighting.face_px = sighting.box.width;
+  return sighting;
 }
 
 // A stranger's face that is not found for some images, because the robot sways or he looks down, still is above the shirt that it was above.

@@ -69,7 +69,7 @@ Box face_above(const Box& shirt, double face_px);
 bool is_above(const Box& face, const Box& shirt);
 
 /// One person from image to image by marker, face, face colour and shirt (6.2, 6.3): Alg. 6.1 with marker and face as primary and the two others as secondary
-/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); a face overrides a shirt, until faces are looked for again, a stranger's for a second longer while no face is seen above it; a stranger's teaches it
+/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); whom the last look for a face named he is until the next one, where nothing else is found; a face overrides a shirt, until faces are looked for again, a stranger's for a second longer while no face is seen above it; a stranger's teaches it
 /// nothing; the colours of a head that is followed show that what looks like the shirt elsewhere is none (6.3.1).
 ///
 /// Threads: one.
@@ -103,6 +103,7 @@ class PersonTracker {
   [[nodiscard]] std::optional<PersonHead> head_of(const PersonImage& input) const;
   void confirm_head(const PersonImage& input, const PersonSighting& sighting);
   void keep_face(const PersonImage& input, bool due);
+  [[nodiscard]] PersonSighting by_last_look() const;
   [[nodiscard]] bool is_below_other_face(const PersonSighting& sighting) const;
 
   PersonTrackerParameters parameters_;
