@@ -12,7 +12,7 @@ namespace {
 
 Cost cost_of(const nlohmann::json& figures) {
   return {figures.at("mean_minstr").get<double>(), figures.at("worst_minstr").get<double>(),
-          figures.value("images", 0)};
+          figures.at("worst_second_minstr").get<double>(), figures.value("images", 0)};
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ namespace cgsr::lab {
 struct Cost {
   double mean_minstr = 0.0;
   double worst_minstr = 0.0;
-  int images = 0;  ///< in which it ran; 0 where that was not counted.
+  double worst_second_minstr = 0.0;  ///< of an image, in the mean over the 30 images in a row that cost most.
+  int images = 0;                    ///< in which it ran; 0 where that was not counted.
 };
 
 /// What tools/count says about a command.
