@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <fstream>
 #include <random>
+#include <set>
+#include <tuple>
 #include <sstream>
 #include <vector>
 
@@ -312,6 +314,24 @@ TEST(FaceDetector, LooksAtNoPartOfTheImageTwiceButForAFaceOnTheEdge) {
     }
     EXPECT_LE(step.region.x + step.region.width - right, 1.3 * step.max_face_px) << step.region.x << ' ' << right;
   }
+}
+
+// A weak face is one in a few sizes and places only: rounds that look for the same ones would miss it for ever.
+TEST(FaceDetector, LooksForOtherSizesAndAtOtherPlacesInEachOfEightRounds) {
+  const auto detector = FaceDetector::from_cascade(cascade_text(), {});
+  ASSERT_TRUE(detector) << detector.error().message;
+  std::set<std::tuple<double, double, double>> looks;
+  std::set<double> sizes;
+  for (std::size_t round = 0; round < 8; ++round) {
+    const SearchStep smallest = detector->round_of(640, 480, round).back();
+    looks.insert({smallest.min_face_px, smallest.region.x, smallest.region.y});
+    sizes.insert(smallest.min_face_px);
+    const SearchStep again = detector->round_of(640, 480, round + 8).back();
+    EXPECT_EQ(again.min_face_px, smallest.min_face_px);
+  }
+  EXPECT_EQ(looks.size(), 8U);
+  ASSERT_EQ(sizes.size(), 2U);
+  EXPECT_NEAR(*sizes.rbegin() / *sizes.begin(), std::sqrt(1.2), 1e-9) << "half a step";
 }
 
 TEST(FaceDetector, SaysWhatIsWrongWithACascade) {

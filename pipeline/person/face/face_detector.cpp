@@ -85,6 +85,12 @@ bool is_among(const std::vector<Box>& faces, const Box& face) {
   return std::ranges::any_of(faces, [&](const Box& other) { return same_face(other, face); });
 }
 
+// A face between two of the sizes that are looked for may be like neither: every other round looks for those between, and of the next four the other half.
+double smallest_face(double min_face_px, std::size_t round) {
+  const bool between = (round + round / 4) % 2 == 1;
+  return between ? min_face_px * std::sqrt(kScaleStep) : min_face_px;
+}
+
 // Every round looks at positions that the one before it left out: four rounds look at all.
 SearchStep shifted(SearchStep slice, std::size_t round) {
   const double position = slice.min_face_px / kRoughCut.face_px;
@@ -153,10 +159,13 @@ std::optional<Box> FaceDetector::find_near(const ImageView& image, const Box& ex
 void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
   if (image.empty()) return;
   if (noticed_.empty()) {
-    const auto slices = slices_of(image.width_px, image.height_px, parameters_.min_face_px, kRoughCut);
+    const auto slices = round_of(image.width_px, image.height_px, round_);
     if (slices.empty()) return;
-    const auto slice = shifted(slices[next_slice_ % slices.size()], next_slice_ / slices.size());
-    ++next_slice_;
+    const auto slice = slices[std::min(next_slice_, slices.size() - 1)];
+    if (++next_slice_ >= slices.size()) {
+      next_slice_ = 0;
+      ++round_;
+    }
     look_at(image, slice, kRoughCut.face_px, 0, *cascade_, noticed_);
     std::erase_if(noticed_, [&](const Box& rough) { return is_among(faces, rough); });
     return;
@@ -193,8 +202,10 @@ std::vector<Box> FaceDetector::find_all_dark(const ImageView& image) {
   return find_all({grey.pixels.data(), grey.width_px, grey.height_px, grey.width_px, PixelFormat::kGrey8});
 }
 
-std::vector<SearchStep> FaceDetector::round_of(int width_px, int height_px) const {
-  return slices_of(width_px, height_px, parameters_.min_face_px, kRoughCut);
+std::vector<SearchStep> FaceDetector::round_of(int width_px, int height_px, std::size_t round) const {
+  auto slices = slices_of(width_px, height_px, smallest_face(parameters_.min_face_px, round), kRoughCut);
+  for (SearchStep& slice : slices) slice = shifted(slice, round);
+  return slices;
 }
 
 }  // namespace cgsr::person

@@ -60,7 +60,7 @@ class FaceDetector {
 
   /// One step of the search through the whole image, which goes on over this image and those that follow: a slice, in which faces are noticed, or a
   /// close look at a place where one was noticed. Slices are searched at every other position, as 6.2.1 does with an image of 160x120; each
-  /// round looks at positions that the one before it left out, so that a face missed in one is met in another.
+  /// round looks at positions that the one before it left out, and for sizes between its sizes, so that a face missed in one is met in another.
   /// Cost: 2 million instructions for a slice, at most 5; 4 for a close look.
   /// \param faces  in: those that are known, which are not looked at again; out: a new one is appended, in the place and size that find_near()
   ///     gives it.
@@ -72,14 +72,15 @@ class FaceDetector {
   /// The same in equalized_locally(): dark faces in a bright room, and more of what is none.
   std::vector<Box> find_all_dark(const ImageView& image);
 
-  /// \return the slices of which a round through a whole image of this size consists.
-  [[nodiscard]] std::vector<SearchStep> round_of(int width_px, int height_px) const;
+  /// \return the slices of which a round through a whole image of this size consists. \param round  eight follow each other, and begin again.
+  [[nodiscard]] std::vector<SearchStep> round_of(int width_px, int height_px, std::size_t round = 0) const;
 
  private:
   FaceDetector(std::unique_ptr<Cascade> cascade, const FaceDetectorParameters& parameters);
 
   std::unique_ptr<Cascade> cascade_;
   FaceDetectorParameters parameters_;
+  std::size_t round_ = 0;  // through the whole image
   std::size_t next_slice_ = 0;
   std::vector<Box> noticed_;  // where faces were noticed and not looked at closely yet
 };

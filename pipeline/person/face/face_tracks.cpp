@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::int64_t kSecond = 30;  // images
 
+/// A box about the same centre, `size` times as large.
+Box centred(const Box& box, double size) {
+  const double width = size * box.width, height = size * box.height;
+  return {box.x + (box.width - width) / 2, box.y + (box.height - height) / 2, width, height};
+}
+
 }  // namespace
 
 FaceTracks::FaceTracks(FaceDetector detector, const FaceTrackParameters& parameters)
@@ -35,8 +41,11 @@ FaceTrack* FaceTracks::longest_waiting() {
 
 // What a track that has lost its face finds where another one follows a face is that one's: the robot has turned from one person to the next.
 void FaceTracks::look_for(FaceTrack& track, const ImageView& image) {
+  // A face that is between two of the sizes that are tried is missed again and again: the next look tries others.
+  constexpr std::array kSizes{1.0, 1.1, 0.91};
   track.looks_waited_ = 0;
-  auto face = detector_.find_near(image, track.box);
+  const double size = kSizes[static_cast<std::size_t>(track.missed) % kSizes.size()];
+  auto face = detector_.find_near(image, centred(track.box, size));
   const auto follows_it = [&](const FaceTrack& other) {
     return &other != &track && other.missed == 0 && same_face(other.box, *face);
   };
@@ -86,9 +95,7 @@ void FaceTracks::pass(const ImageView& image, WorkBudget& budget) {
 void FaceTracks::expect(const ImageView& image, const Box& expected) {
   constexpr std::array kSizes{1.0, 1.3, 0.77};
   const double size = kSizes[looks_at_expected_++ % kSizes.size()];
-  const double side = size * expected.width, height = size * expected.height;
-  const Box sought{expected.x + (expected.width - side) / 2, expected.y + (expected.height - height) / 2, side, height};
-  if (const auto face = detector_.find_near(image, sought)) add(*face);
+  if (const auto face = detector_.find_near(image, centred(expected, size))) add(*face);
 }
 
 void FaceTracks::forget_lost() {
