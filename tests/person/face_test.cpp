@@ -5,8 +5,8 @@
 #include <fstream>
 #include <random>
 #include <set>
-#include <tuple>
 #include <sstream>
+#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>

@@ -255,8 +255,8 @@ constexpr std::array kRequirements{
     // Chapter 6.
     NamedRequirement{"figure-6.7", "face, face colour and shirt", "identify", at_most(7.0)},
     NamedRequirement{"figure-6.7", "face, face colour and shirt", "identify, worst", at_most(12.0)},
-    NamedRequirement{"figure-6.7", "face, face colour and shirt",
-                     "recognition beside the frame path, worst second", at_most(8.0)},
+    NamedRequirement{"figure-6.7", "face, face colour and shirt", "recognition beside the frame path, worst second",
+                     at_most(8.0)},
     NamedRequirement{"figure-6.7", "the same, of a stranger", "identify, worst", at_most(12.0)},
     NamedRequirement{"figure-6.7", "the same, of a stranger", "recognition beside the frame path, worst second",
                      at_most(8.0)},
