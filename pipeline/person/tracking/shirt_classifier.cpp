@@ -1,14 +1,12 @@
 #include "pipeline/person/tracking/shirt_classifier.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "pipeline/person/colors/color_histogram.h"
+#include "pipeline/person/tracking/shirt_colors.h"
 
 namespace cgsr::person {
 namespace {
@@ -31,84 +29,10 @@ double camera_area(const Blob& blob) {
   return double(blob.area_px) * kFactor * kFactor;
 }
 
-// In a light that changes a blob loses its darker sides first: the shirt is as large as it was, and gets smaller slowly. It is not elsewhere for that: it moves
-// as far as what is seen of it leads out of where it was.
-Box settled(const Box& before, const Box& now) {
-  constexpr double kShrinks = 0.998;  // in an image
-  const double width = std::max(now.width, kShrinks * before.width);
-  const double height = std::max(now.height, kShrinks * before.height);
-  const double x = before.x + (before.width - width) / 2, y = before.y + (before.height - height) / 2;
-  return {std::clamp(x, now.x - (width - now.width), now.x), std::clamp(y, now.y - (height - now.height), now.y), width,
-          height};
-}
-
-// The middle of a shirt, and what is to its left and right. All pixels count: those that have the shirt's colours in a light that changes have changed least.
-std::optional<PartColors> colors_of(const ImageView& image, const Box& shirt) {
-  const auto strip = [&](double x) { return mean_color(image, {x, shirt.y, shirt.width / 2, shirt.height}); };
-  const auto middle =
-      mean_color(image, {shirt.x + shirt.width / 4, shirt.y + shirt.height / 4, shirt.width / 2, shirt.height / 2});
-  const auto left = strip(shirt.x - 0.75 * shirt.width), right = strip(shirt.x + 1.25 * shirt.width);
-  if (!middle || (!left && !right)) return std::nullopt;
-  if (!left || !right) return PartColors{*middle, left ? *left : *right};
-  return PartColors{*middle, {(left->r + right->r) / 2, (left->g + right->g) / 2, (left->b + right->b) / 2}};
-}
-
-// Of a shirt nearby no more is learned at a time than of one far away, or a single image would outweigh what its face taught.
-std::vector<imaging::Rgb> thinned(std::vector<imaging::Rgb> samples) {
-  constexpr std::size_t kMost = 800;
-  const std::size_t stride = (samples.size() + kMost - 1) / kMost;
-  if (stride <= 1) return samples;
-  std::vector<imaging::Rgb> some;
-  for (std::size_t i = 0; i < samples.size(); i += stride) some.push_back(samples[i]);
-  return some;
-}
-
-std::vector<imaging::Rgb> colors_of_both(const ImageView& image, const std::array<Box, 2>& regions) {
-  auto colors = region_colors(image, regions[0]);
-  const auto right = region_colors(image, regions[1]);
-  colors.insert(colors.end(), right.begin(), right.end());
-  return colors;
-}
-
-// A person who turns sideways leaves room at his place for the wall behind him: what is rarer in it than beside it is not learned. Another side of the shirt
-// that comes into view is in it alone.
-void leave_out_background(std::vector<imaging::Rgb>& samples, std::span<const imaging::Rgb> beside) {
-  ColorHistogram inside, outside;
-  inside.add(samples);
-  outside.add(beside);
-  std::erase_if(samples, [&](const imaging::Rgb& color) { return inside.share(color) < outside.share(color); });
-}
-
 // A marker that is turned away teaches nothing: beside a narrow shirt there is background where the shirt is expected.
 bool is_facing(const MarkerSighting& marker) {
   constexpr double kMinWidth = 0.7;  // of its height: turned by less than 45 degrees
   return marker.box.width >= kMinWidth * marker.box.height;
-}
-
-// Colours that are found beside the marker, or in a part of the shirt alone, are no longer those of the shirt (relative position and size may issue a
-// re-training, 6.3.1).
-bool lies_under(const Box& shirt, const MarkerSighting& marker) {
-  constexpr double kMinShare = 0.5;  // of where it would be sampled
-  const Box expected = sampling_regions(marker).shirt;
-  return intersection(shirt, expected).area() >= kMinShare * expected.area();
-}
-
-// Of a face low in the image, or at its side, the shirt is out of view: a few pixels of it teach neither its colours nor the light on it.
-bool is_in_view(const Box& shirt, const ImageView& image) {
-  constexpr double kMinInView = 0.5;  // of its area
-  return intersection(shirt, {0.0, 0.0, double(image.width_px), double(image.height_px)}).area() >=
-         kMinInView * shirt.area();
-}
-
-/// How many times as large a blob is as it was: by the side that has changed less, 1 where one has grown and the other has not; nothing where something else was
-/// joined or torn off. Of one that the image cuts in height the width says that it is nearer.
-std::optional<double> growth_of(const Box& before, const Box& now, const ImageView& image) {
-  constexpr double kLargest = 0.08;
-  const bool is_high = is_cut_in_height(before, image) || is_cut_in_height(now, image);
-  if (before.empty() || is_cut_in_width(before, image) || is_cut_in_width(now, image)) return std::nullopt;
-  const double wider = now.width / before.width, higher = is_high ? std::max(1.0, wider) : now.height / before.height;
-  if (std::abs(wider - 1.0) > kLargest || std::abs(higher - 1.0) > kLargest) return std::nullopt;
-  return higher >= 1.0 ? std::min(higher, std::max(1.0, wider)) : std::max(higher, std::min(1.0, wider));
 }
 
 }  // namespace
@@ -250,14 +174,9 @@ std::optional<Label> ShirtClassifier::find_at_place(const PersonImage& input, st
 
 // The light and the sides of a shirt change while its person turns and walks: what is surely its own is added to its colours.
 void ShirtClassifier::learn_at_place(const PersonImage& input, const Box& trunk) {
-  constexpr double kMargin = 0.15;      // of its sides, where sleeves or background may be
   constexpr double kMinContrast = 0.3;  // or it is partly covered, or before something of its colours
   if (++since_place_learned_ < parameters_.images_between || followed_.contrast() < kMinContrast) return;
-  const Box middle{trunk.x + kMargin * trunk.width, trunk.y + kMargin * trunk.height,
-                   (1.0 - 2.0 * kMargin) * trunk.width, (1.0 - 2.0 * kMargin) * trunk.height};
-  std::vector<imaging::Rgb> samples = thinned(region_colors(input.image, middle));
-  leave_out_background(samples, colors_of_both(input.image, beside_trunk(trunk)));
-  colors_.add(*followed_person_, samples, {}, light_.of(*followed_person_));
+  colors_.add(*followed_person_, trunk_colors(input.image, trunk), {}, light_.of(*followed_person_));
   since_place_learned_ = 0;
   map_is_due_ = true;
 }
@@ -326,7 +245,7 @@ void ShirtClassifier::found(const PersonImage& input, Label person) {
   person_ = person;
   missed_ = since_trained_ = 0;
   supposed_ = false;
-  const auto colors = colors_of(input.image, place_);
+  const auto colors = part_colors(input.image, place_);
   if (!colors || !light_.found(person, *colors)) return;
   constexpr double kRoom = 0.5;  // of its sides, to each side
   const Box window{place_.x - kRoom * place_.width, place_.y - kRoom * place_.height,
@@ -377,7 +296,7 @@ void ShirtClassifier::lost(const PersonImage& input) {
   constexpr int kTurn = 2;  // images
   if (++missed_ >= kLongLoss && missed_ % kTurn == 0 && !supposed_ && light_.turn(*person_)) map_is_due_ = true;
   if (missed_ >= kLongLoss || map_is_due_) return;
-  const auto now = colors_of(input.image, place_);
+  const auto now = part_colors(input.image, place_);
   if (!now || !light_.suppose(*person_, *now)) return;
   before_light_.reset();
   supposed_ = map_is_due_ = true;
