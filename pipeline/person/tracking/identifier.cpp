@@ -13,7 +13,7 @@ constexpr int kImagesToForget = 15;  // without the latest person of interest
 
 Identifier::Identifier(std::optional<FaceDetector> detector, std::unique_ptr<FaceRecognizer> recognizer,
                        const IdentifierParameters& parameters)
-    : recognizer_(std::move(recognizer)), tracker_(parameters.tracker) {
+    : recognizer_(std::move(recognizer)), tracker_(parameters.tracker, parameters.faces.min_sure_confidence) {
   if (detector) faces_.emplace(std::move(*detector), parameters.faces);
   if (parameters.marker.enabled) markers_.emplace(parameters.marker);
 }

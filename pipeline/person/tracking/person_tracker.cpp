@@ -35,9 +35,8 @@ std::string_view to_string(PersonSource source) {
 std::optional<Classification> FaceClassifier::classify(const PersonImage& input) {
   if (!input.face) return std::nullopt;
   const FaceMatch& match = input.face->match;
-  constexpr double kSure = 0.75;  // of a name
   const bool of_another = input.interest && match.label != input.interest && match.nearest != input.interest;
-  if (!of_another || (match.label && match.confidence >= kSure))
+  if (!of_another || (match.label && match.confidence >= min_sure_confidence_))
     return Classification{match.label.value_or(kStranger), match.confidence};
   // Whose it is is open, that it is not the person's is not.
   if (match.rules_out > match.confidence) return Classification{kStranger, match.rules_out};
@@ -63,9 +62,10 @@ bool is_above(const Box& face, const Box& shirt) {
   return above <= kMostAbove * face.width || intersection(trunk_below(face), shirt).area() >= kOfTrunk * shirt.area();
 }
 
-PersonTracker::PersonTracker(const PersonTrackerParameters& parameters)
+PersonTracker::PersonTracker(const PersonTrackerParameters& parameters, double min_sure_confidence)
     : parameters_(parameters),
       labels_(parameters.shirt.max_width_px, parameters.shirt.max_height_px),
+      faces_(min_sure_confidence),
       face_colors_(labels_, parameters.face_color),
       shirts_(labels_, parameters.shirt) {
   feedback_.add(markers_, 0);

@@ -7,6 +7,7 @@
 
 #include "pipeline/person/colors/color_labels.h"
 #include "pipeline/person/context.h"
+#include "pipeline/person/face/face_tracks.h"
 #include "pipeline/person/feedback.h"
 #include "pipeline/person/tracking/face_color_classifier.h"
 #include "pipeline/person/tracking/shirt_classifier.h"
@@ -19,9 +20,15 @@ inline constexpr Label kStranger = 0;
 /// The primary characteristic: names the person whose face was recognised in this image, or a stranger (6.2.1).
 class FaceClassifier final : public Classifier<PersonImage> {
  public:
+  /// \param min_sure_confidence  from which on a face beside the person's shirt is somebody else's by its name.
+  explicit FaceClassifier(double min_sure_confidence) : min_sure_confidence_(min_sure_confidence) {}
+
   std::optional<Classification> classify(const PersonImage& input) override;
   /// A shirt does not train a face, as in 6.2.4: who wears somebody else's would become that person. FaceTrainer does, by the face's own past.
   void train(Label, std::optional<Label>) override {}
+
+ private:
+  double min_sure_confidence_;
 };
 
 /// The other primary characteristic: names the person whose marker was read in this image, or a stranger (6.4.1.1).
@@ -75,7 +82,9 @@ bool is_above(const Box& face, const Box& shirt);
 /// Threads: one.
 class PersonTracker {
  public:
-  explicit PersonTracker(const PersonTrackerParameters& parameters = {});
+  /// \param min_sure_confidence  as FaceClassifier's.
+  explicit PersonTracker(const PersonTrackerParameters& parameters = {},
+                         double min_sure_confidence = FaceTrackParameters{}.min_sure_confidence);
 
   /// Whether a face is to be looked for in the next image: always until a shirt is known, if there is to be one, then in every other one (6.2.3).
   [[nodiscard]] bool face_is_due() const;
