@@ -76,7 +76,7 @@ Decision FinalsTask::decide(const FrameResult& frame, const ImageView& image, Du
   if (follow_.is_with_a_stranger() && state_ == FinalsState::kWith) lose(decision.events);
   const person::PersonSighting& who = people->person;
   const bool is_below_lost_face = who.person == person::kStranger && other_images_ >= kFacesOfALostOne;
-  if (who.source != person::PersonSource::kFace && !is_below_lost_face) return decision;
+  if (who.age_images > 0 || (who.source != person::PersonSource::kFace && !is_below_lost_face)) return decision;
   if (who.person == person_) {
     see_person(who, image, decision.events);
   } else {

@@ -122,9 +122,9 @@ void FollowPersonTask::light_the_face(const IdentifiedPeople* people, const Imag
     evidence.seen = people->person.source == person::PersonSource::kFace;
     if (evidence.seen) evidence.dark = person::context_of(image, people->person.box).dark;
     const bool nobody = people->person.source == person::PersonSource::kNone;
-    if (nobody) {  // waits for a face: of whom nothing is known yet the light may show it, or whose one in the noise is
+    if (nobody) {  // waits for a face that can be named: the light may show one, or whose a noisy one is
       evidence.seen = std::ranges::any_of(people->seen_faces(), &person::SeenFace::compared);
-      evidence.lost = !evidence.seen;
+      evidence.lost = people->seen_faces().empty();
       evidence.expected = true;
       evidence.dark = person::mean_luma(image, where_faces_are(image)) <= light_->max_waiting_luma() ? 1.0 : 0.0;
     } else if (const auto& face = people->expected_face) {
@@ -162,7 +162,7 @@ Decision FollowPersonTask::decide(const FrameResult& frame, const ImageView& ima
   if ((who.person && !is_person) || is_with_a_stranger()) last_.reset();
   const bool primary = who.source == person::PersonSource::kFace || who.source == person::PersonSource::kMarker;
   const bool believed = primary || !(by_primary_only_ || is_with_a_stranger());
-  if (is_person && believed) last_ = sighting_of(who, image);
+  if (is_person && believed && who.age_images == 0) last_ = sighting_of(who, image);
   const behavior::FollowDecision follow = follow_.decide(last_.value_or(behavior::Sighting{}), elapsed);
   std::string_view reason = behavior::to_string(follow.reason);
   if (!last_ && who.person) reason = enrolled ? "somebody else is in view" : "a stranger is in view";

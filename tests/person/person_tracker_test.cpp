@@ -57,6 +57,17 @@ TEST(PersonTracker, LooksForFacesInEveryOtherImageOnceAShirtIsKnown) {
   EXPECT_EQ(due, 10);
 }
 
+// From the sure confidence on a face has its own name beside the person's; below it, it is not the person's.
+TEST(FaceClassifier, NamesSomebodyElseFromTheSureConfidenceOn) {
+  PersonImage image;
+  image.interest = 4;
+  image.face = face_of(5, 0.85);
+  image.face->match.nearest = 5;
+  image.face->match.rules_out = 0.9;
+  EXPECT_EQ(FaceClassifier(0.75).classify(image)->label, 5);
+  EXPECT_EQ(FaceClassifier(0.95).classify(image)->label, kStranger);
+}
+
 // Where a shirt is not found between two looks for a face, what the last look said holds; what it did not see it does not say.
 TEST(PersonTracker, BetweenTwoLooksForAFaceIsWhoTheLastOneNamed) {
   PersonTracker tracker;
@@ -70,6 +81,7 @@ TEST(PersonTracker, BetweenTwoLooksForAFaceIsWhoTheLastOneNamed) {
     EXPECT_EQ(between.source, PersonSource::kFace);
     EXPECT_EQ(between.box, kFaceBox);
     EXPECT_EQ(between.face_px, kFaceBox.width);
+    EXPECT_EQ(between.age_images, 1) << "it was not looked for in this image";
     for (int image = 0; image < 4; ++image) EXPECT_EQ(tracker.update({empty.view()}).person, std::nullopt) << image;
   }
 }

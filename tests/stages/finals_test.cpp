@@ -40,13 +40,14 @@ class Finals : public testing::Test {
 
   /// So many images in which somebody is identified by this; \return what was said.
   std::vector<std::string> see(person::Label who, person::PersonSource by, const std::vector<std::uint8_t>& shirt,
-                               int images = 20) {
+                               int images = 20, int age_images = 0) {
     FrameResult frame;
     auto& sighting = frame.people.value.person;
     sighting.person = who;
     sighting.source = by;
     sighting.box = {270, 60, 100, 100};
     sighting.face_px = 100;
+    sighting.age_images = age_images;
     frame.people.age = Duration::zero();
     const ImageView image{shirt.data(), kWidth_px, kHeight_px, std::ptrdiff_t{2} * kWidth_px, PixelFormat::kYuyv};
     std::vector<std::string> said;
@@ -101,6 +102,14 @@ TEST_F(Finals, OneImageOfAStrangerIsNoStranger) {
   see(1, kFace, green_);
   EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
   EXPECT_EQ(see(1, kFace, green_), Words{});
+}
+
+// Between two looks for a face it is told once more who the last one named.
+TEST_F(Finals, AFaceThatIsNotLookedForDecidesNothingAnew) {
+  see(1, kFace, green_);
+  EXPECT_EQ(see(person::kStranger, kFace, green_, 1), Words{});
+  EXPECT_EQ(see(person::kStranger, kFace, green_, 20, 1), Words{});
+  EXPECT_NE(see(person::kStranger, kFace, green_, 20), Words{});
 }
 
 TEST_F(Finals, BeforeThePersonIsKnownAStrangerIsNoLoss) {

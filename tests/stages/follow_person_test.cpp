@@ -145,6 +145,19 @@ TEST_F(FollowPerson, GoesOnBetweenTwoFacesWhereAShirtIsNotBelieved) {
   EXPECT_TRUE(last.halt) << "nor followed for longer than a moment";
 }
 
+// What the last look for a face said is not seen anew: it ages as if nothing were said.
+TEST_F(FollowPerson, StopsWhereTheFaceIsNotSeenAnew) {
+  auto follower = task(4);
+  for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));
+  Decision last;
+  for (int i = 0; i < 15; ++i) {
+    person::PersonSighting old = face(4, 30.0);
+    old.age_images = i + 1;
+    last = see(follower, old);
+  }
+  EXPECT_TRUE(last.halt);
+}
+
 TEST_F(FollowPerson, GoesOnWhereAFewImagesShowNobodyAndStopsThen) {
   auto follower = task(4);
   for (int i = 0; i < 30; ++i) see(follower, face(4, 30.0));

@@ -85,13 +85,14 @@ bool is_among(const std::vector<Box>& faces, const Box& face) {
   return std::ranges::any_of(faces, [&](const Box& other) { return same_face(other, face); });
 }
 
-// A face between two of the sizes that are looked for may be like neither: every other round looks for those between, and of the next four the other half.
+// A face between two of the sizes that are looked for may be like neither: every other round looks for those between. Rounds 4 to 7
+// swap the two, so that each size meets each of the four positions.
 double smallest_face(double min_face_px, std::size_t round) {
   const bool between = (round + round / 4) % 2 == 1;
   return between ? min_face_px * std::sqrt(kScaleStep) : min_face_px;
 }
 
-// Every round looks at positions that the one before it left out: four rounds look at all.
+// Every round looks at positions that the one before it left out.
 SearchStep shifted(SearchStep slice, std::size_t round) {
   const double position = slice.min_face_px / kRoughCut.face_px;
   slice.region.x += position * static_cast<double>(round % 2);
@@ -160,7 +161,10 @@ void FaceDetector::search(const ImageView& image, std::vector<Box>& faces) {
   if (image.empty()) return;
   if (noticed_.empty()) {
     const auto slices = round_of(image.width_px, image.height_px, round_);
-    if (slices.empty()) return;
+    if (slices.empty()) {
+      ++round_;  // the next one begins with smaller faces
+      return;
+    }
     const auto slice = slices[std::min(next_slice_, slices.size() - 1)];
     if (++next_slice_ >= slices.size()) {
       next_slice_ = 0;

@@ -53,8 +53,9 @@ class FaceTrainer {
       : gallery_(std::move(gallery)), eyes_(std::move(eyes)) {}
 
   /// Noise makes a face farther from everybody, its own views too: of one that hardly stands out of it, 'a stranger's' and 'nobody else's' are less sure.
-  /// 'A stranger's' of what has not shown an eye in any crop does not count.
-  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where it is clearly a stranger's and has not shown an eye yet. Beyond kMaxEyeLooks it does not count either.
+  /// 'A stranger's' of what has not shown an eye in any crop of its track does not count, nor where no look for one may be made (kMaxEyeLooks). What a track goes
+  /// over to after it has shown one counts.
+  /// Cost: as identify_crop(), half a million instructions where the name is not sure, and EyeDetector's where it is clearly a stranger's and has not shown an eye yet.
   FaceAnswer answer(const FaceQuestion& question);
 
   /// \return how many views were learned of a face.
@@ -76,7 +77,8 @@ class FaceTrainer {
 
   FaceGallery gallery_;
   std::optional<EyeDetector> eyes_;
-  std::bitset<5> looked_for_eyes_;  // in this answer, the lowest, and the four before it
+  static constexpr std::size_t kAnswers = 5;
+  std::bitset<kAnswers> looked_for_eyes_;  // in this answer, the lowest, and the four before it
   std::array<Followed, kFaces> followed_{};
 };
 

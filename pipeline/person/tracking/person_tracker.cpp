@@ -178,6 +178,7 @@ PersonSighting PersonTracker::by_last_look() const {
   if (!by_face_ || since_by_face_ > 0) return {};
   PersonSighting sighting = *by_face_;
   sighting.face_px = sighting.box.width;
+  sighting.age_images = since_face_;
   return sighting;
 }
 

@@ -20,7 +20,7 @@ inline constexpr Label kStranger = 0;
 /// The primary characteristic: names the person whose face was recognised in this image, or a stranger (6.2.1).
 class FaceClassifier final : public Classifier<PersonImage> {
  public:
-  /// \param min_sure_confidence  from which on a face beside the person's shirt is somebody else's by its name.
+  /// \param min_sure_confidence  from which on a face that is neither the person's of interest nor nearest to that person's counts under its own name.
   explicit FaceClassifier(double min_sure_confidence) : min_sure_confidence_(min_sure_confidence) {}
 
   std::optional<Classification> classify(const PersonImage& input) override;
@@ -64,7 +64,8 @@ struct PersonSighting {
   std::optional<Label> person;  ///< nothing: nobody is identified; kStranger: somebody who is not enrolled.
   PersonSource source = PersonSource::kNone;
   double confidence = 0.0;
-  Box box;  ///< of what identified him, in pixels of the image.
+  Box box;             ///< of what identified him, in pixels of the image in which it was seen.
+  int age_images = 0;  ///< since it was seen: 0 in this one; else between two looks for a face.
   double face_px =
       0.0;  ///< width of the face at the person's distance, seen, by its colours, by shirt or marker; 0: not known.
 };
@@ -76,7 +77,7 @@ Box face_above(const Box& shirt, double face_px);
 bool is_above(const Box& face, const Box& shirt);
 
 /// One person from image to image by marker, face, face colour and shirt (6.2, 6.3): Alg. 6.1 with marker and face as primary and the two others as secondary
-/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); whom the last look for a face named he is until the next one, where nothing else is found; a face overrides a shirt, until faces are looked for again, a stranger's for a second longer while no face is seen above it; a stranger's teaches it
+/// characteristics, and the scheduling of 6.2.3. A face or marker without its shirt relearns the shirt (6.2.4); between two looks for a face whoever the last one named is there, where nothing else says who is; a face overrides a shirt, until faces are looked for again, a stranger's for a second longer while no face is seen above it; a stranger's teaches it
 /// nothing; the colours of a head that is followed show that what looks like the shirt elsewhere is none (6.3.1).
 ///
 /// Threads: one.

@@ -34,7 +34,7 @@ constexpr Variant kVariants[] = {
     {"face alone, in every other image", "person.tracker = {shirt.enabled = false, face_color.enabled = false}\n"},
     {"face and shirt", "person.tracker.face_color.enabled = false\n"},
     {"face, face colour and shirt", ""},  // as it ships: the face in every other image
-    {"the same, of a stranger", "", 4},
+    {"face, face colour and shirt, a stranger", "", 4},
 };
 
 /// The robot stands (6.2): where it drives, the counted run would have to repeat every motion of the one that drew its images.
@@ -106,7 +106,7 @@ Result<Report> figure_6_7(const Setting& setting) {
   if (const auto enrolled = enroll_all({0, 1, 2, 3}, portraits, folder / "identities"); !enrolled)
     return tl::unexpected(enrolled.error());
   Report report;
-  report.title = fmt::format("instructions per image of identifying one of four people, {} s", kCounted_s);
+  report.title = fmt::format("instructions per image of identifying one of four people, or a stranger, {} s", kCounted_s);
   for (const Variant& variant : kVariants) {
     if (const auto written = write_scene(folder, variant.identity); !written) return tl::unexpected(written.error());
     setting.progress(fmt::format("figure 6.7, {}", variant.name));
