@@ -34,7 +34,8 @@ struct FaceTrackParameters {
                  "After this many where it is not yet sure.");
     visit.number("min_sure_confidence", self.min_sure_confidence, Range{0.5, 1.0}, "",
                  "The confidence from which on a name is sure: above that of a shirt, which overrules a less sure face "
-                 "(Alg. 6.1). A face that is neither the person's of interest nor nearest to that person's counts under its own name from there on, below it as not the person's.");
+                 "(Alg. 6.1). A face that is neither the person's of interest nor nearest to that person's counts "
+                 "under its own name from there on, below it as not the person's.");
     visit.number(
         "max_comparisons", self.max_comparisons, Range{1, 30}, "",
         "At most so many faces are compared in 30 images, a second: what recognition costs beside the frame path.");

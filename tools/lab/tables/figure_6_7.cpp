@@ -106,7 +106,8 @@ Result<Report> figure_6_7(const Setting& setting) {
   if (const auto enrolled = enroll_all({0, 1, 2, 3}, portraits, folder / "identities"); !enrolled)
     return tl::unexpected(enrolled.error());
   Report report;
-  report.title = fmt::format("instructions per image of identifying one of four people, or a stranger, {} s", kCounted_s);
+  report.title =
+      fmt::format("instructions per image of identifying one of four people, or a stranger, {} s", kCounted_s);
   for (const Variant& variant : kVariants) {
     if (const auto written = write_scene(folder, variant.identity); !written) return tl::unexpected(written.error());
     setting.progress(fmt::format("figure 6.7, {}", variant.name));
