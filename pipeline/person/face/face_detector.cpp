@@ -46,7 +46,8 @@ double tile_length(double length_px, int tiles, double overlap_px) {
 // As many as cost no more than the fewest do in the largest slice: pixels shrink with the square of the size sought.
 int sizes_in(double width_px, double height_px, const Cut& cut) {
   constexpr double kShrink = 1.0 / (kScaleStep * kScaleStep);
-  const double affordable = cut.width_px * cut.height_px * (1.0 + kShrink);
+  constexpr double kFull = 0.85;  // of the largest slice: what the tiles of a 640x480 image reach
+  const double affordable = kFull * cut.width_px * cut.height_px * (1.0 + kShrink);
   double pixels = width_px * height_px * (1.0 + kShrink), next = width_px * height_px * kShrink * kShrink;
   int sizes = kMinSizes;
   for (; sizes < 10 && pixels + next <= affordable; ++sizes, next *= kShrink) pixels += next;
