@@ -73,19 +73,46 @@ class LumaView {
     return false;
   }
 
+  /// What a pixel shows, 0 to 255 from black to white.
+  struct Shown {
+    float brightness;
+    float brightest_color;  ///< of red, green and blue; of a grey image the brightness.
+  };
+  /// Of the pixel nearest to (x, y). BT.601 takes the colours out of YUYV.
+  [[nodiscard]] Shown shown_at(float x, float y) const {
+    const auto column = static_cast<std::ptrdiff_t>(x + 0.5F);
+    return shown(data_ + static_cast<std::ptrdiff_t>(y + 0.5F) * stride_, column);
+  }
+  /// Up to here a colour surely says how much light there was, 0 to 255: noise, and in YUYV the chroma that two pixels share, leave more of it open.
+  [[nodiscard]] float full_color() const {
+    return step_ == 1 ? static_cast<float>(levels_.saturated) - kGreyNoise : kClippedColor - kColorNoise;
+  }
+  /// The level of a brightness, 0 to 255.
+  [[nodiscard]] float level_of(float brightness) const {
+    return step_ == 1 ? brightness : kBlack + brightness / kWhitePerLevel;
+  }
+
  private:
-  /// BT.601 takes the colours out of YUYV.
-  [[nodiscard]] bool is_clipped(const std::uint8_t* row, std::ptrdiff_t column) const {
-    const std::uint8_t level = row[column * step_];
-    if (step_ == 1) return level >= levels_.saturated;
+  [[nodiscard]] Shown shown(const std::uint8_t* row, std::ptrdiff_t column) const {
+    const auto level = static_cast<float>(row[column * step_]);
+    if (step_ == 1) return {level, level};
     const std::uint8_t* pair = row + column / 2 * 4;
     const float u = static_cast<float>(pair[1]) - 128.0F;
     const float v = static_cast<float>(pair[3]) - 128.0F;
     const float most = std::max({1.596F * v, -0.392F * u - 0.813F * v, 2.017F * u});
-    return 1.164F * (static_cast<float>(level) - 16.0F) + most >= kClippedColor;
+    const float brightness = kWhitePerLevel * (level - kBlack);
+    return {brightness, brightness + most};
+  }
+  [[nodiscard]] bool is_clipped(const std::uint8_t* row, std::ptrdiff_t column) const {
+    if (step_ == 1) return row[column] >= levels_.saturated;
+    return shown(row, column).brightest_color >= kClippedColor;
   }
 
+  static constexpr float kGreyNoise = 2.5F;
+  static constexpr float kColorNoise = 4.0F;
   static constexpr float kMinClippedLevel = 170.0F;
+  static constexpr float kBlack = 16.0F;  // of YUYV
+  static constexpr float kWhitePerLevel = 1.164F;
   static constexpr float kClippedColor = 250.0F;  // of 255: chroma is shared by two pixels, and noisy
 
   const std::uint8_t* data_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,6 +28,17 @@ struct ShadowSamples {
   int clipped_count = 0;
 
   void clear() { count = clipped_count = 0; }
+  /// From `level` on the image holds no more light: what is there or above is clipped, nothing else is. Which neighbour's noise goes over the end of a colour
+  /// would choose the darker ones of places that are equally bright.
+  void clip_at(float level) {
+    clipped_count = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+      const bool is_clipped = value[i] >= level;
+      value[i] = std::min(value[i], level);
+      clipped[i] = is_clipped ? 1.0F : 0.0F;
+      clipped_count += is_clipped ? 1 : 0;
+    }
+  }
   void add(const Eigen::Vector2f& from_foot, float level, bool is_clipped, int at) {
     const auto i = static_cast<std::size_t>(count++);
     x[i] = from_foot.x();

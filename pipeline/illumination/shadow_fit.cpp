@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Cholesky>
@@ -38,6 +39,13 @@ constexpr double kLeastVariance = 0.3;  // grey levels squared
 constexpr double kOverClipped =
     0.25;  // so much brighter than the image holds a board is likely to be, with that standard deviation
 constexpr double kMinDarkSigmas = 6.0;  // of a contrast
+// Of 255: from where to where a colour tells the ceiling.
+constexpr float kLeastColor = 110.0F;
+constexpr float kMostColor = 240.0F;
+// What the dark side of the edges leaves open: how far they lie from where they seem to, alike along both lines, as a share of the penumbra; and from which
+// share of clipped samples on. From tuning homes (homes-5.1, seeds 22 and 23).
+constexpr double kEdgeShare = 0.45;
+constexpr double kHalfClipped = 0.3;
 // Added to a clipped fit's covariance, in its own units and times the share of clipped samples: what is left of the edges hangs on the penumbra's exact shape,
 // and errs alike along a line. From tuning homes (homes-5.1, seeds 5 to 8).
 constexpr double kClippedVariance = 8.0;
@@ -101,6 +109,7 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
         const Vector2d pixel = d.at + t * across;
         if (!image.holds(pixel.x(), pixel.y(), 1.0) || !is_seen(board_, behind, p_B)) continue;
         const float level = image.at(pixel.x(), pixel.y());
+        pixel_[static_cast<std::size_t>(samples_.count)] = pixel.cast<float>();
         samples_.add((p_B - probe_.foot_B).cast<float>(), level, image.is_clipped(pixel.x(), pixel.y(), level), place);
       }
       if (samples_.count - before < (choice.with_tip || choice.sparse ? 3 : kLeastAcross)) {
@@ -111,6 +120,24 @@ void ShadowFit::choose(const LumaView& image, const BoardView& view, const std::
       side_of_[static_cast<std::size_t>(place++)] = side;
     }
   }
+  if (samples_.clipped_count > 0) samples_.clip_at(ceiling(image));
+}
+
+// The level at which the brightest colour is clipped: as far above the levels of places that are not clipped as their brightest colour is below its
+// end. Places that are nearly as bright count most, for their light is nearly the board's.
+float ShadowFit::ceiling(const LumaView& image) const {
+  float brightness = 0.0F;
+  float color = 0.0F;
+  float lowest = std::numeric_limits<float>::infinity();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(samples_.count); ++i) {
+    if (samples_.clipped[i] != 0.0F) lowest = std::min(lowest, samples_.value[i]);
+    const auto shown = image.shown_at(pixel_[i].x(), pixel_[i].y());
+    if (shown.brightest_color < kLeastColor || shown.brightest_color > kMostColor) continue;
+    const float squared = shown.brightest_color * shown.brightest_color;
+    brightness += squared * squared * shown.brightness;
+    color += squared * squared * shown.brightest_color;
+  }
+  return color > 0.0F ? image.level_of(image.full_color() * brightness / color) : lowest;
 }
 
 bool ShadowFit::choose_enough(const LumaView& image, const BoardView& view,
@@ -189,6 +216,17 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
     moved_m = (x.head<2>() - choice.tip_shadow).norm();
   }
   return true;
+}
+
+// Where the bright side of the edges is clipped, a brighter board with softer edges looks nearly alike: both lines then lie further out or in, and the tip, where they
+// meet, moves along the shadow, the more the narrower it is.
+Eigen::Matrix2d ShadowFit::left_by_clipping(const ShadowUnknowns& x) const {
+  if (samples_.clipped_count == 0) return Eigen::Matrix2d::Zero();
+  const double share = std::min(1.0, samples_.clipped_count / (kHalfClipped * samples_.count));
+  const double softness_m = std::max(x[kSoftness], softness_per_radius_ * parameters_.lamp_radius_m);
+  const Vector2d along = x.head<2>() - x.segment<2>(kFootX);
+  const Vector2d tip_moves = kEdgeShare * share * softness_m / x[kRadius] * along;
+  return tip_moves * tip_moves.transpose();
 }
 
 double ShadowFit::seen_contrast(const ShadowUnknowns& x, const ShadowStart& start) const {
@@ -277,7 +315,7 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
   const double inflation = 1.0 + kClippedVariance * samples_.clipped_count / samples_.count;
-  shadow.covariance = inflation * covariance.topLeftCorner<2, 2>();
+  shadow.covariance = inflation * covariance.topLeftCorner<2, 2>() + left_by_clipping(x);
   shadow.lamp_radius_m = x[kSoftness] / softness_per_radius_;
   shadow.lamp_radius_sigma_m = std::sqrt(inflation * covariance(kSoftness, kSoftness)) / softness_per_radius_;
   shadow.J_pose = -d.J_point.leftCols<2>().inverse() * view.pose_jacobian(d, p_BS);

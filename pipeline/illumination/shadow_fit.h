@@ -57,6 +57,7 @@ class ShadowFit {
 
   void choose(const LumaView& image, const BoardView& view, const std::array<Outline, kMostProbes>& behind,
               const Choice& choice);
+  [[nodiscard]] float ceiling(const LumaView& image) const;
   [[nodiscard]] bool choose_enough(const LumaView& image, const BoardView& view,
                                    const std::array<Outline, kMostProbes>& behind, Choice choice);
   void add_known(const ShadowUnknowns& x, const ShadowStart& start, ShadowSums& sums) const;
@@ -66,6 +67,7 @@ class ShadowFit {
   [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x, double seen_contrast) const;
   [[nodiscard]] bool is_dark(double seen_contrast, const ShadowNormal& covariance) const;
   [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
+  [[nodiscard]] Eigen::Matrix2d left_by_clipping(const ShadowUnknowns& x) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
 
   Board board_;
@@ -74,6 +76,7 @@ class ShadowFit {
   double softness_per_radius_;
   SoftStep step_;
   ShadowSamples samples_;
+  std::array<Eigen::Vector2f, ShadowSamples::kMost> pixel_{};  // of each sample
   std::array<std::size_t, kMostPlaces> side_of_{};  // which line a place lies along
   ShadowEdges edges_;
 };

@@ -15,7 +15,8 @@ struct ShadeParameters {
   double lift = 1e-3;
   int max_surfaces = 4000;
   int max_edges = 4000;
-  double sigmas = 2.0;
+  double sigmas = 1.2;
+  double ball_sigmas = 2.0;
   double map_sigma_m = 0.005;
   int max_widening_cells = 7;
 
@@ -39,6 +40,9 @@ struct ShadeParameters {
     visit.number("sigmas", self.sigmas, {0.0, 10.0}, "",
                  "The number of standard deviations of pose, lamp and map by which the mask of possibly shaded cells "
                  "is widened.");
+    visit.number("ball_sigmas", self.ball_sigmas, {0.0, 10.0}, "",
+                 "The number of those standard deviations by which a ball's place may be off when it is asked whether "
+                 "the ball may lie in shade.");
     visit.number("map_sigma_m", self.map_sigma_m, {0.0, 0.5}, "m",
                  "The standard deviation of the map's corners in every direction.");
     visit.number("max_widening_cells", self.max_widening_cells, {0, 7}, "",

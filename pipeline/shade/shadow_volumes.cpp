@@ -132,8 +132,8 @@ UncertainBall ShadowVolumes::place_of(const BallInImage& ball) const {
   uncertain.p_WB = axes_.p_WC + static_cast<float>(distance_m) * uncertain.along;
   uncertain.radius_m = static_cast<float>(ball.radius_m);
   uncertain.along_m =
-      static_cast<float>(parameters_.sigmas * distance_m * std::hypot(kBallSize, kCircle_px / ball.radius_px));
-  uncertain.across_m = static_cast<float>(parameters_.sigmas * across_m);
+      static_cast<float>(parameters_.ball_sigmas * distance_m * std::hypot(kBallSize, kCircle_px / ball.radius_px));
+  uncertain.across_m = static_cast<float>(parameters_.ball_sigmas * across_m);
   return uncertain;
 }
 

@@ -137,6 +137,19 @@ TEST(ShadowBrightnessProperty, SumsAsTheModelWrittenDown) {
   }
 }
 
+TEST(ShadowSamples, ClipsWhatIsAtALevelOrAboveAndNothingElse) {
+  ShadowSamples samples;
+  samples.add({0.0F, 0.0F}, 100.0F, true, 0);  // a neighbour's noise
+  samples.add({0.0F, 0.0F}, 200.0F, false, 0);
+  samples.add({0.0F, 0.0F}, 220.0F, true, 0);
+  samples.clip_at(200.0F);
+  EXPECT_EQ(samples.clipped_count, 2);
+  EXPECT_EQ(samples.clipped[0], 0.0F);
+  EXPECT_EQ(samples.clipped[1], 1.0F);
+  EXPECT_EQ(samples.value[0], 100.0F);
+  EXPECT_EQ(samples.value[2], 200.0F);
+}
+
 TEST(ShadowBrightness, ATipOnTheBaseThrowsNoShadow) {
   ShadowUnknowns x;
   x << kEdges.foot + Vector2d(0.01, 0.0), kEdges.foot, 0.02, 30.0, 150.0, 0.0, 0.0, 0.0014;

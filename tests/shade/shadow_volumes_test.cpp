@@ -222,6 +222,7 @@ TEST(ShadowVolumesProperty, TheWidenedMaskHoldsWhatLampAndPoseDoNotKnow) {
 TEST(ShadowVolumes, AShadedFaceGrowsByWhatItsDepthSays) {
   const ShadeErrors errors = errors_of(0.0, 0.012, 0.0);
   ShadeParameters parameters;
+  parameters.sigmas = 2.0;
   parameters.map_sigma_m = 0.0;
   const auto width_cells = [&](float away_m, bool widened) {
     Map map;
