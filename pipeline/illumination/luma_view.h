@@ -78,10 +78,9 @@ class LumaView {
     float brightness;
     float brightest_color;  ///< of red, green and blue; of a grey image the brightness.
   };
-  /// Of the pixel nearest to (x, y). BT.601 takes the colours out of YUYV.
+  /// Of the upper left of the four neighbours of (x, y). BT.601 takes the colours out of YUYV.
   [[nodiscard]] Shown shown_at(float x, float y) const {
-    const auto column = static_cast<std::ptrdiff_t>(x + 0.5F);
-    return shown(data_ + static_cast<std::ptrdiff_t>(y + 0.5F) * stride_, column);
+    return shown(data_ + static_cast<std::ptrdiff_t>(y) * stride_, static_cast<std::ptrdiff_t>(x));
   }
   /// Up to here a colour surely says how much light there was, 0 to 255: noise, and in YUYV the chroma that two pixels share, leave more of it open.
   [[nodiscard]] float full_color() const {

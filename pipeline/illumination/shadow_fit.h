@@ -77,7 +77,7 @@ class ShadowFit {
   SoftStep step_;
   ShadowSamples samples_;
   std::array<Eigen::Vector2f, ShadowSamples::kMost> pixel_{};  // of each sample
-  std::array<std::size_t, kMostPlaces> side_of_{};  // which line a place lies along
+  std::array<std::size_t, kMostPlaces> side_of_{};             // which line a place lies along
   ShadowEdges edges_;
 };
 

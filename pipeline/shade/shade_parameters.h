@@ -15,7 +15,7 @@ struct ShadeParameters {
   double lift = 1e-3;
   int max_surfaces = 4000;
   int max_edges = 4000;
-  double sigmas = 1.2;
+  double sigmas = 1.5;
   double ball_sigmas = 2.0;
   double map_sigma_m = 0.005;
   int max_widening_cells = 7;
