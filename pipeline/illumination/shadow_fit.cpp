@@ -218,14 +218,16 @@ bool ShadowFit::settle(const LumaView& image, const BoardView& view, const std::
   return true;
 }
 
-// Where the bright side of the edges is clipped, a brighter board with softer edges looks nearly alike: both lines then lie further out or in, and the tip, where they
-// meet, moves along the shadow, the more the narrower it is.
-Eigen::Matrix2d ShadowFit::left_by_clipping(const ShadowUnknowns& x) const {
-  if (samples_.clipped_count == 0) return Eigen::Matrix2d::Zero();
+// Where the bright side of the edges is clipped, a brighter board with softer edges looks nearly alike.
+double ShadowFit::softness_left_open_m(const ShadowUnknowns& x) const {
   const double share = std::min(1.0, samples_.clipped_count / (kHalfClipped * samples_.count));
-  const double softness_m = std::max(x[kSoftness], softness_per_radius_ * parameters_.lamp_radius_m);
+  return kEdgeShare * share * std::max(x[kSoftness], softness_per_radius_ * parameters_.lamp_radius_m);
+}
+
+// Both lines then lie further out or in, and the tip, where they meet, moves along the shadow, the more the narrower it is.
+Eigen::Matrix2d ShadowFit::tip_left_open(const ShadowUnknowns& x) const {
   const Vector2d along = x.head<2>() - x.segment<2>(kFootX);
-  const Vector2d tip_moves = kEdgeShare * share * softness_m / x[kRadius] * along;
+  const Vector2d tip_moves = softness_left_open_m(x) / x[kRadius] * along;
   return tip_moves * tip_moves.transpose();
 }
 
@@ -315,9 +317,11 @@ bool ShadowFit::fit(const LumaView& image, const BoardView& view, const std::arr
   shadow.rms = std::sqrt(fitted.variance);
   shadow.p_BS = x.head<2>();
   const double inflation = 1.0 + kClippedVariance * samples_.clipped_count / samples_.count;
-  shadow.covariance = inflation * covariance.topLeftCorner<2, 2>() + left_by_clipping(x);
+  shadow.covariance = inflation * covariance.topLeftCorner<2, 2>() + tip_left_open(x);
   shadow.lamp_radius_m = x[kSoftness] / softness_per_radius_;
-  shadow.lamp_radius_sigma_m = std::sqrt(inflation * covariance(kSoftness, kSoftness)) / softness_per_radius_;
+  shadow.lamp_radius_sigma_m =
+      std::hypot(std::sqrt(inflation * covariance(kSoftness, kSoftness)), softness_left_open_m(x)) /
+      softness_per_radius_;
   shadow.J_pose = -d.J_point.leftCols<2>().inverse() * view.pose_jacobian(d, p_BS);
   if (!with_tip) return is_shown(x, shadow);
   shadow.lines = 2;

@@ -67,7 +67,8 @@ class ShadowFit {
   [[nodiscard]] bool may_be_shadow(const ShadowUnknowns& x, double seen_contrast) const;
   [[nodiscard]] bool is_dark(double seen_contrast, const ShadowNormal& covariance) const;
   [[nodiscard]] bool is_shown(const ShadowUnknowns& x, ProbeShadow& shadow) const;
-  [[nodiscard]] Eigen::Matrix2d left_by_clipping(const ShadowUnknowns& x) const;
+  [[nodiscard]] double softness_left_open_m(const ShadowUnknowns& x) const;
+  [[nodiscard]] Eigen::Matrix2d tip_left_open(const ShadowUnknowns& x) const;
   [[nodiscard]] double reach_on_board(const Eigen::Vector2d& from, const Eigen::Vector2d& line, double most) const;
 
   Board board_;
